@@ -1,0 +1,295 @@
+//! The three-parameter model, eq. (3) and (4).
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Geometry;
+use crate::facet::Ellipsoid;
+use crate::fresnel::Dielectric;
+use crate::shadowing;
+
+/// The smallest and the largest k1 of the model's domain.
+pub const K1_DOMAIN: (f64, f64) = (1e-8, 1e8);
+
+/// The smallest and the largest refractive index of the model's domain.
+pub const N_DOMAIN: (f64, f64) = (1.0, 1e5);
+
+/// The three parameters of the model, in the paper's order.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "RawParameters")]
+pub struct Parameters {
+    /// Specular weight k2 = (pi/4) f(0) R(0) >= 0, dimensionless.
+    pub k2: f64,
+    /// Diffuse weight kD >= 0: the hemispherical reflectance of the Lambertian part.
+    pub kd: f64,
+    /// Width k1 of the facet distribution, within [`K1_DOMAIN`]; small is narrow.
+    pub k1: f64,
+}
+
+/// Why a set of parameters is outside the model's domain.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ParameterError {
+    /// The specular weight is negative or not finite.
+    #[error("specular weight k2 = {0}: expected a finite number >= 0")]
+    K2(f64),
+    /// The diffuse weight is negative or not finite.
+    #[error("diffuse weight kD = {0}: expected a finite number >= 0")]
+    Kd(f64),
+    /// The width is outside [`K1_DOMAIN`].
+    #[error("facet width k1 = {0}: expected a number in [{min:e}, {max:e}]", min = K1_DOMAIN.0, max = K1_DOMAIN.1)]
+    K1(f64),
+    /// The refractive index is outside [`N_DOMAIN`].
+    #[error("refractive index n = {0}: expected a number in [{min}, {max:e}]", min = N_DOMAIN.0, max = N_DOMAIN.1)]
+    N(f64),
+}
+
+/// Parameters as they stand in a file, before they are checked.
+#[derive(Deserialize)]
+struct RawParameters {
+    k2: f64,
+    kd: f64,
+    k1: f64,
+}
+
+impl TryFrom<RawParameters> for Parameters {
+    type Error = ParameterError;
+
+    fn try_from(raw: RawParameters) -> Result<Self, ParameterError> {
+        Self::new(raw.k2, raw.kd, raw.k1)
+    }
+}
+
+impl Parameters {
+    /// Parameters k2 >= 0, kD >= 0 and k1 in [`K1_DOMAIN`].
+    pub fn new(k2: f64, kd: f64, k1: f64) -> Result<Self, ParameterError> {
+        let weight = 0.0..=f64::MAX;
+        if !weight.contains(&k2) {
+            return Err(ParameterError::K2(k2));
+        }
+        if !weight.contains(&kd) {
+            return Err(ParameterError::Kd(kd));
+        }
+        if !(K1_DOMAIN.0..=K1_DOMAIN.1).contains(&k1) {
+            return Err(ParameterError::K1(k1));
+        }
+        Ok(Self { k2, kd, k1 })
+    }
+}
+
+/// Checks a refractive index against [`N_DOMAIN`].
+pub fn check_refractive_index(n: f64) -> Result<f64, ParameterError> {
+    if (N_DOMAIN.0..=N_DOMAIN.1).contains(&n) {
+        Ok(n)
+    } else {
+        Err(ParameterError::N(n))
+    }
+}
+
+/// The BRDF of Li, Yan and Wu, eq. (4):
+///
+/// ```text
+/// f_r = (k2/pi) f(alpha)/f(0) R0(gamma) G / (cos psi cos theta) + kD/pi      [1/sr]
+/// ```
+///
+/// f(alpha)/f(0) is the [facet distribution](crate::facet::Ellipsoid), R0 the [Fresnel
+/// factor](crate::fresnel::Dielectric::relative), G the [shadowing](crate::shadowing::v_groove).
+/// The function is reciprocal, to the last bit.
+///
+/// ```
+/// use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+///
+/// let brdf = ThreeParameterBrdf::new(Parameters::new(1.211, 0.521, 0.071)?, 1.60)?;
+/// let mirror = Geometry::in_plane(30_f64.to_radians(), -30_f64.to_radians())?;
+/// assert!((brdf.value(&mirror) - 0.6831).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThreeParameterBrdf {
+    parameters: Parameters,
+    facet: Ellipsoid,
+    fresnel: Dielectric,
+}
+
+impl ThreeParameterBrdf {
+    /// The model of the parameters at the refractive index n in [`N_DOMAIN`].
+    pub fn new(parameters: Parameters, n: f64) -> Result<Self, ParameterError> {
+        // The fields are public: what was changed by hand is checked again.
+        let parameters = Parameters::new(parameters.k2, parameters.kd, parameters.k1)?;
+        Ok(Self {
+            parameters,
+            facet: Ellipsoid::new(parameters.k1),
+            fresnel: Dielectric::new(check_refractive_index(n)?),
+        })
+    }
+
+    /// The parameters k2, kD and k1.
+    pub fn parameters(&self) -> Parameters {
+        self.parameters
+    }
+
+    /// The refractive index n.
+    pub fn n(&self) -> f64 {
+        self.fresnel.n()
+    }
+
+    /// f_r in 1/sr.
+    pub fn value(&self, geometry: &Geometry) -> f64 {
+        let specular =
+            self.facet.value(geometry) * self.mirror_factor(geometry) * self.parameters.k2;
+        (specular + self.parameters.kd) / PI
+    }
+
+    /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
+    pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
+        let mirror = self.mirror_factor(geometry) / PI;
+        [
+            self.facet.value(geometry) * mirror,
+            1.0 / PI,
+            self.parameters.k2 * self.facet.derivative_k1(geometry) * mirror,
+        ]
+    }
+
+    /// The derivative of f_r by the refractive index n, in 1/sr per unit.
+    pub fn derivative_n(&self, geometry: &Geometry) -> f64 {
+        let fresnel_slope = self
+            .fresnel
+            .relative_derivative_n(geometry.cos_gamma, geometry.sin2_gamma);
+        self.parameters.k2 / PI
+            * self.facet.value(geometry)
+            * fresnel_slope
+            * shadowing::v_groove_over_cosines(geometry)
+    }
+
+    /// Scattered radiant intensity for unit flux, eq. (3): K = f_r cos theta, in 1/sr.
+    pub fn radiant_intensity(&self, geometry: &Geometry) -> f64 {
+        self.value(geometry) * geometry.cos_theta
+    }
+
+    pub(crate) fn facet(&self) -> Ellipsoid {
+        self.facet
+    }
+
+    pub(crate) fn fresnel(&self) -> Dielectric {
+        self.fresnel
+    }
+
+    /// What does not depend on the parameters but on n: R0(gamma) G / (cos psi cos theta).
+    fn mirror_factor(&self, geometry: &Geometry) -> f64 {
+        self.fresnel.relative(geometry.cos_gamma) * shadowing::v_groove_over_cosines(geometry)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn brdf(k2: f64, kd: f64, k1: f64, n: f64) -> ThreeParameterBrdf {
+        ThreeParameterBrdf::new(Parameters::new(k2, kd, k1).unwrap(), n).unwrap()
+    }
+
+    /// Parameters over the model's whole domain of k1 and n, and usual weights.
+    fn any_brdf() -> impl Strategy<Value = ThreeParameterBrdf> {
+        (1e-4..10.0, 0.0..1.0, -18.4..18.4_f64, -16.0..11.5_f64)
+            .prop_map(|(k2, kd, log_k1, log_n)| brdf(k2, kd, log_k1.exp(), 1.0 + log_n.exp()))
+    }
+
+    #[test]
+    fn normal_incidence_and_view_give_the_sum_of_the_weights() {
+        let normal = Geometry::in_plane(0.0, 0.0).unwrap();
+        let value = brdf(0.3, 0.2, 0.15, 1.5).value(&normal);
+        assert!((value - 0.5 / PI).abs() < 1e-16);
+    }
+
+    #[test]
+    fn without_a_specular_weight_the_surface_is_lambertian() {
+        let geometry = Geometry::new(0.4, 1.2, 2.0).unwrap();
+        assert_eq!(brdf(0.0, 0.25, 0.15, 1.5).value(&geometry), 0.25 / PI);
+    }
+
+    #[test]
+    fn the_radiant_intensity_carries_the_view_cosine() {
+        let brdf = brdf(0.3, 0.2, 0.15, 1.5);
+        let geometry = Geometry::in_plane(0.3, 0.5).unwrap();
+        let expected = brdf.value(&geometry) * 0.5_f64.cos();
+        assert_eq!(brdf.radiant_intensity(&geometry), expected);
+    }
+
+    #[test]
+    fn parameters_outside_the_domain_are_named() {
+        let message = |k2, kd, k1| Parameters::new(k2, kd, k1).unwrap_err().to_string();
+        assert!(message(-1.0, 0.0, 1.0).contains("k2 = -1"));
+        assert!(message(0.0, f64::NAN, 1.0).contains("kD = NaN"));
+        assert!(message(0.0, 0.0, 0.0).contains("k1 = 0"));
+        assert!(message(0.0, 0.0, f64::INFINITY).contains("k1 = inf"));
+        let parameters = Parameters::new(1.0, 0.0, 1.0).unwrap();
+        let error = ThreeParameterBrdf::new(parameters, 0.9).unwrap_err();
+        assert!(error.to_string().contains("n = 0.9"));
+        let changed = Parameters {
+            k1: -1.0,
+            ..parameters
+        };
+        assert_eq!(
+            ThreeParameterBrdf::new(changed, 1.5),
+            Err(ParameterError::K1(-1.0))
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn is_reciprocal(
+            brdf in any_brdf(), psi in 0.0..FRAC_PI_2, theta in 0.0..FRAC_PI_2, phi in -7.0..7.0_f64,
+        ) {
+            let there = Geometry::new(psi, theta, phi).unwrap();
+            let back = Geometry::new(theta, psi, phi).unwrap();
+            prop_assert_eq!(brdf.value(&there), brdf.value(&back));
+        }
+
+        #[test]
+        fn is_positive_and_finite(
+            brdf in any_brdf(), psi in 0.0..=FRAC_PI_2, theta in 0.0..=FRAC_PI_2, phi in -7.0..7.0_f64,
+        ) {
+            let geometry = Geometry::new(psi, theta, phi).unwrap();
+            prop_assert!(brdf.value(&geometry) >= 0.0 && brdf.value(&geometry).is_finite());
+            prop_assert!(brdf.gradient(&geometry).iter().all(|d| d.is_finite() && *d >= 0.0));
+            prop_assert!(brdf.derivative_n(&geometry).is_finite());
+        }
+
+        #[test]
+        fn grows_with_each_weight(
+            psi in 0.0..1.57, theta in 0.0..1.57, phi in 0.0..6.3_f64, more in 1e-3..1.0,
+        ) {
+            let geometry = Geometry::new(psi, theta, phi).unwrap();
+            let value = brdf(0.3, 0.2, 0.2, 1.5).value(&geometry);
+            prop_assert!(brdf(0.3 + more, 0.2, 0.2, 1.5).value(&geometry) > value);
+            prop_assert!(brdf(0.3, 0.2 + more, 0.2, 1.5).value(&geometry) > value);
+        }
+
+        #[test]
+        fn gradient_is_that_of_the_value(
+            k2 in 0.01..3.0, kd in 0.01..1.0, log_k1 in -4.0..2.0_f64, n in 1.1..4.0,
+            psi in 0.0..1.5, theta in -1.5..1.5,
+        ) {
+            let k1 = log_k1.exp();
+            let geometry = Geometry::in_plane(psi, theta).unwrap();
+            let at = |k2, kd, k1, n| brdf(k2, kd, k1, n).value(&geometry);
+            let central = |up: f64, down: f64, step: f64| (up - down) / (2.0 * step);
+            let h = 1e-6;
+            let [dk2, dkd, dk1] = brdf(k2, kd, k1, n).gradient(&geometry);
+            let dn = brdf(k2, kd, k1, n).derivative_n(&geometry);
+            let by_k2 = central(at(k2 + h * k2, kd, k1, n), at(k2 - h * k2, kd, k1, n), h * k2);
+            let by_kd = central(at(k2, kd + h * kd, k1, n), at(k2, kd - h * kd, k1, n), h * kd);
+            let by_k1 = central(at(k2, kd, k1 + h * k1, n), at(k2, kd, k1 - h * k1, n), h * k1);
+            let by_n = central(at(k2, kd, k1, n + h), at(k2, kd, k1, n - h), h);
+            let tolerance = 1e-8 * at(k2, kd, k1, n);
+            prop_assert!((dk2 - by_k2).abs() < tolerance / k2.min(1.0));
+            prop_assert!((dkd - by_kd).abs() < tolerance / kd.min(1.0));
+            prop_assert!((dk1 - by_k1).abs() < tolerance / k1.min(1.0));
+            prop_assert!((dn - by_n).abs() < tolerance * 10.0);
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Directions and angles, and the few quantities of them that the model's terms need.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::Vector3;
+
+/// How far the length of a direction vector may be from 1.
+///
+/// Wide enough for vectors that were rounded to `f32`; such vectors are brought to length 1.
+const LENGTH_TOLERANCE: f64 = 1e-6;
+
+/// One pair of directions: light comes from the incidence zenith angle psi, and is seen from the
+/// zenith angle theta at the azimuth phi from the source (0 = back towards the source, pi =
+/// forward). The surface normal is the z axis.
+///
+/// A geometry holds what the terms of the model need, in forms that keep their relative accuracy
+/// up to grazing angles and next to the specular direction. With h = source + view, its component
+/// `h_z` = cos psi + cos theta along the normal and `h_t` across it (Fig. 1 of the paper):
+///
+/// ```text
+/// tan^2 alpha = h_t^2 / h_z^2
+///             = tan^2((psi - theta)/2) + 4 sin psi sin theta cos^2(phi/2) / h_z^2
+/// cos gamma   = h_z / (2 cos alpha)
+/// sin^2 gamma = |source - view|^2 / 4
+/// ```
+///
+/// where alpha is the tilt of the facet that mirrors source into view and gamma the incidence
+/// angle on that facet. The first form follows from
+/// sin psi - sin theta = (cos psi + cos theta) tan((psi - theta)/2): no difference of nearly equal
+/// numbers is left, but for psi - theta itself, which is exact where it matters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometry {
+    pub(crate) cos_psi: f64,
+    pub(crate) cos_theta: f64,
+    pub(crate) cos_gamma: f64,
+    pub(crate) sin2_gamma: f64,
+    pub(crate) tan2_alpha: f64,
+    pub(crate) sec_alpha: f64,
+}
+
+/// Why a pair of directions is outside the model's domain.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum GeometryError {
+    /// The incidence angle is not in [0, pi/2).
+    #[error("incidence angle psi = {0} rad: expected a value in [0, pi/2)")]
+    Incidence(f64),
+    /// The view angle is not in (-pi/2, pi/2).
+    #[error("view angle theta = {0} rad: expected a value between -pi/2 and pi/2")]
+    View(f64),
+    /// The azimuth is not a finite number.
+    #[error("azimuth phi = {0} rad: expected a finite number")]
+    Azimuth(f64),
+    /// A direction vector is not of length 1.
+    #[error("direction of length {0}: expected a unit vector")]
+    Length(f64),
+    /// A direction points into the surface or along it.
+    #[error("direction with z = {0}: expected z > 0, the side of the surface normal")]
+    BelowSurface(f64),
+}
+
+impl Geometry {
+    /// The geometry of the angles psi, theta and phi, in radians.
+    ///
+    /// Domain: psi in [0, pi/2), theta in (-pi/2, pi/2), any finite phi. The `f64` nearest to
+    /// pi/2 is below pi/2 and belongs to the domain. A negative theta is the direction (|theta|,
+    /// phi + pi), so that `new(psi, theta, 0.0)` takes the signed in-plane angle of the paper.
+    pub fn new(psi: f64, theta: f64, phi: f64) -> Result<Self, GeometryError> {
+        if !(0.0..=FRAC_PI_2).contains(&psi) {
+            return Err(GeometryError::Incidence(psi));
+        }
+        if theta.is_nan() || theta.abs() > FRAC_PI_2 {
+            return Err(GeometryError::View(theta));
+        }
+        if !phi.is_finite() {
+            return Err(GeometryError::Azimuth(phi));
+        }
+        let (sin_half_phi, cos_half_phi) = (0.5 * phi).sin_cos();
+        Ok(if theta < 0.0 {
+            Self::from_half_azimuth(psi, -theta, cos_half_phi, sin_half_phi)
+        } else {
+            Self::from_half_azimuth(psi, theta, sin_half_phi, cos_half_phi)
+        })
+    }
+
+    /// The geometry in the plane of incidence, with the paper's signed view angle, in radians:
+    /// theta = -psi is the specular direction, theta = psi looks back into the source.
+    pub fn in_plane(psi: f64, signed_theta: f64) -> Result<Self, GeometryError> {
+        Self::new(psi, signed_theta, 0.0)
+    }
+
+    /// The geometry of two unit vectors that point away from the surface, towards the source and
+    /// towards the viewer; z is the surface normal.
+    pub fn from_directions(
+        source: &Vector3<f64>,
+        view: &Vector3<f64>,
+    ) -> Result<Self, GeometryError> {
+        let source = checked_direction(source)?;
+        let view = checked_direction(view)?;
+        let half = source + view;
+        let difference = source - view;
+        let tan2_alpha = (half.x * half.x + half.y * half.y) / (half.z * half.z);
+        Ok(Self::from_parts(
+            source.z,
+            view.z,
+            tan2_alpha,
+            0.25 * difference.norm_squared(),
+        ))
+    }
+
+    /// Both zenith angles not negative, the azimuth as the sine and cosine of its half.
+    fn from_half_azimuth(psi: f64, theta: f64, sin_half_phi: f64, cos_half_phi: f64) -> Self {
+        let (sin_psi, cos_psi) = psi.sin_cos();
+        let (sin_theta, cos_theta) = theta.sin_cos();
+        let tan_difference = (0.5 * (psi - theta)).tan();
+        let tan2_difference = tan_difference * tan_difference;
+        let h_z = cos_psi + cos_theta;
+        let sines = 4.0 * sin_psi * sin_theta;
+        let out_of_plane = cos_half_phi / h_z;
+        let tan2_alpha = tan2_difference + sines * (out_of_plane * out_of_plane);
+        // |source - view|^2, with cos psi - cos theta = -(sin psi + sin theta) tan((psi-theta)/2).
+        let sum_of_sines = sin_psi + sin_theta;
+        let across = tan2_difference * (sum_of_sines * sum_of_sines + h_z * h_z);
+        let sin2_gamma = 0.25 * (across + sines * (sin_half_phi * sin_half_phi));
+        Self::from_parts(cos_psi, cos_theta, tan2_alpha, sin2_gamma)
+    }
+
+    fn from_parts(cos_psi: f64, cos_theta: f64, tan2_alpha: f64, sin2_gamma: f64) -> Self {
+        let sec_alpha = (1.0 + tan2_alpha).sqrt();
+        Self {
+            cos_psi,
+            cos_theta,
+            cos_gamma: 0.5 * (cos_psi + cos_theta) * sec_alpha,
+            sin2_gamma,
+            tan2_alpha,
+            sec_alpha,
+        }
+    }
+
+    /// cos psi, the cosine of the incidence angle.
+    pub fn cos_psi(&self) -> f64 {
+        self.cos_psi
+    }
+
+    /// cos theta, the cosine of the view angle.
+    pub fn cos_theta(&self) -> f64 {
+        self.cos_theta
+    }
+
+    /// cos gamma, the cosine of the incidence angle on the facet.
+    pub fn cos_gamma(&self) -> f64 {
+        self.cos_gamma
+    }
+
+    /// sin^2 gamma, accurate also where gamma is small.
+    pub fn sin2_gamma(&self) -> f64 {
+        self.sin2_gamma
+    }
+
+    /// tan^2 alpha of the facet's tilt alpha, accurate also where alpha is small.
+    pub fn tan2_alpha(&self) -> f64 {
+        self.tan2_alpha
+    }
+
+    /// 1 / cos alpha of the facet's tilt alpha.
+    pub fn sec_alpha(&self) -> f64 {
+        self.sec_alpha
+    }
+}
+
+fn checked_direction(direction: &Vector3<f64>) -> Result<Vector3<f64>, GeometryError> {
+    let length = direction.norm();
+    // Written so that NaN is refused as well.
+    if !((length - 1.0).abs() <= LENGTH_TOLERANCE) {
+        return Err(GeometryError::Length(length));
+    }
+    if direction.z <= 0.0 {
+        return Err(GeometryError::BelowSurface(direction.z));
+    }
+    Ok(direction / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn direction(zenith: f64, azimuth: f64) -> Vector3<f64> {
+        Vector3::new(
+            zenith.sin() * azimuth.cos(),
+            zenith.sin() * azimuth.sin(),
+            zenith.cos(),
+        )
+    }
+
+    #[test]
+    fn the_mirror_direction_has_no_tilt() {
+        for psi_deg in [0.0_f64, 1.0, 45.0, 89.9] {
+            let psi = psi_deg.to_radians();
+            let geometry = Geometry::in_plane(psi, -psi).unwrap();
+            assert_eq!(geometry.tan2_alpha(), 0.0);
+            assert!((geometry.cos_gamma() - psi.cos()).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn retro_reflection_tilts_the_facet_by_psi() {
+        let psi = 0.7_f64;
+        let geometry = Geometry::in_plane(psi, psi).unwrap();
+        assert!((geometry.tan2_alpha() - psi.tan().powi(2)).abs() < 1e-15);
+        assert!((geometry.cos_gamma() - 1.0).abs() < 1e-15);
+        assert_eq!(geometry.sin2_gamma(), 0.0);
+    }
+
+    #[test]
+    fn angles_outside_the_domain_are_named() {
+        let message = |psi, theta, phi| Geometry::new(psi, theta, phi).unwrap_err().to_string();
+        assert!(message(-0.1, 0.0, 0.0).contains("psi = -0.1"));
+        assert!(message(1.6, 0.0, 0.0).contains("psi = 1.6"));
+        assert!(message(f64::NAN, 0.0, 0.0).contains("psi = NaN"));
+        assert!(message(0.0, -1.6, 0.0).contains("theta = -1.6"));
+        assert!(message(0.0, f64::NAN, 0.0).contains("theta = NaN"));
+        assert!(message(0.0, 0.0, f64::INFINITY).contains("phi = inf"));
+    }
+
+    #[test]
+    fn directions_outside_the_domain_are_named() {
+        let up = Vector3::z();
+        let message = |a: &Vector3<f64>, b: &Vector3<f64>| {
+            Geometry::from_directions(a, b).unwrap_err().to_string()
+        };
+        assert!(message(&(2.0 * up), &up).contains("length 2"));
+        assert!(message(&up, &-up).contains("z = -1"));
+        assert!(message(&up, &Vector3::x()).contains("z = 0"));
+        assert!(message(&up, &Vector3::new(f64::NAN, 0.0, 1.0)).contains("length NaN"));
+    }
+
+    proptest! {
+        #[test]
+        fn angles_and_directions_agree(
+            psi in 0.0..1.55, theta in 0.0..1.55, phi in -7.0..7.0_f64,
+        ) {
+            let by_angles = Geometry::new(psi, theta, phi).unwrap();
+            let by_directions =
+                Geometry::from_directions(&direction(psi, 0.0), &direction(theta, phi)).unwrap();
+            prop_assert!((by_angles.cos_gamma - by_directions.cos_gamma).abs() < 1e-14);
+            prop_assert!((by_angles.sin2_gamma - by_directions.sin2_gamma).abs() < 1e-14);
+            let tan2 = by_angles.tan2_alpha;
+            prop_assert!((tan2 - by_directions.tan2_alpha).abs() < 1e-12 * (1.0 + tan2));
+        }
+
+        #[test]
+        fn source_and_view_are_interchangeable(
+            psi in 0.0..FRAC_PI_2, theta in 0.0..FRAC_PI_2, phi in -7.0..7.0_f64,
+        ) {
+            let there = Geometry::new(psi, theta, phi).unwrap();
+            let back = Geometry::new(theta, psi, phi).unwrap();
+            prop_assert_eq!(there.tan2_alpha, back.tan2_alpha);
+            prop_assert_eq!(there.cos_gamma, back.cos_gamma);
+            prop_assert_eq!(there.sin2_gamma, back.sin2_gamma);
+        }
+
+        #[test]
+        fn a_negative_view_angle_is_the_forward_side(
+            psi in 0.0..1.57, theta in 0.0..1.57_f64, phi in -3.0..3.0_f64,
+        ) {
+            let signed = Geometry::new(psi, -theta, phi).unwrap();
+            let turned = Geometry::new(psi, theta, phi + PI).unwrap();
+            prop_assert!((signed.cos_gamma - turned.cos_gamma).abs() < 1e-14);
+            let tan2 = signed.tan2_alpha;
+            prop_assert!((tan2 - turned.tan2_alpha).abs() < 1e-13 * (1.0 + tan2));
+        }
+
+        #[test]
+        fn sine_and_cosine_of_the_facet_angle_belong_together(
+            psi in 0.0..FRAC_PI_2, theta in 0.0..FRAC_PI_2, phi in -7.0..7.0_f64,
+        ) {
+            let g = Geometry::new(psi, theta, phi).unwrap();
+            prop_assert!((g.cos_gamma * g.cos_gamma + g.sin2_gamma - 1.0).abs() < 1e-14);
+        }
+    }
+}

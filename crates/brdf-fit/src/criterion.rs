@@ -1,0 +1,262 @@
+//! The error criterion E of eq. (5), with its derivatives by the parameters.
+
+use brdf_core::Parameters;
+use brdf_core::fresnel::Dielectric;
+use brdf_core::shadowing::v_groove_over_cosines;
+use nalgebra::{Matrix3, Vector3};
+
+use crate::measurement::Measurement;
+use crate::weights::Weights;
+
+/// E as a function of the parameters, for one set of readings:
+///
+/// ```text
+/// E = sum g (f_meas - f_model)^2 cos^2 theta / sum g (f_meas cos theta)^2
+///   = sum (y - kD a - k2 s k1^2/(t + k1^2))^2
+/// ```
+///
+/// What does not depend on the parameters is computed once for each reading: with
+/// w = sqrt(g) cos theta / sqrt(sum g (f_meas cos theta)^2), y = w `f_meas`, a = w/pi,
+/// s = a sec alpha R0(gamma) G/(cos psi cos theta) and t = tan^2 alpha. Vectors and matrices are
+/// in the order (k2, kD, k1). (Eq. 5 of Li, Yan and Wu 2002.)
+#[derive(Debug, Clone)]
+pub struct Criterion {
+    measured: Vec<f64>,
+    diffuse: Vec<f64>,
+    specular: Vec<f64>,
+    tan2_alpha: Vec<f64>,
+    /// The sums that do not depend on k1.
+    diffuse_squared: f64,
+    diffuse_measured: f64,
+}
+
+/// E and what a step of Gauss and Newton needs: half the gradient of E, J^T r, and half its
+/// approximate Hessian, J^T J.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NormalEquations<const P: usize> {
+    /// E.
+    pub error: f64,
+    /// J^T r, half the gradient of E.
+    pub gradient: nalgebra::SVector<f64, P>,
+    /// J^T J.
+    pub matrix: nalgebra::SMatrix<f64, P, P>,
+}
+
+/// The scalar products that the exact solution for k2 and kD needs at one k1, with
+/// u = s k1^2/(t + k1^2).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct ProfileSums {
+    pub(crate) uu: f64,
+    pub(crate) ua: f64,
+    pub(crate) uy: f64,
+    pub(crate) aa: f64,
+    pub(crate) ay: f64,
+}
+
+/// Why E is not defined for a set of readings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum CriterionError {
+    /// Weights by sigma, and a reading without one.
+    #[error(
+        "weights by 1/sigma^2 need the standard deviation of every reading (column sigma_per_sr)"
+    )]
+    NoSigma,
+    /// The denominator of E is zero.
+    #[error("all readings are zero, or weigh nothing: E of eq. (5) is not defined")]
+    AllZero,
+}
+
+impl Criterion {
+    /// The criterion over the readings at the refractive index n.
+    ///
+    /// The readings were [validated](Measurement::validated), n is in the model's domain.
+    pub fn new(
+        readings: &[Measurement],
+        n: f64,
+        weights: &Weights,
+    ) -> Result<Self, CriterionError> {
+        let fresnel = Dielectric::new(n);
+        let mut criterion = Self::with_capacity(readings.len());
+        for reading in readings {
+            let weight = weights.of(reading).ok_or(CriterionError::NoSigma)?;
+            let Ok(geometry) = reading.geometry() else {
+                unreachable!("readings are validated when they enter Measurements")
+            };
+            let w = weight.sqrt() * geometry.cos_theta();
+            let a = w / std::f64::consts::PI;
+            criterion.measured.push(w * reading.brdf);
+            criterion.diffuse.push(a);
+            criterion.specular.push(
+                a * geometry.sec_alpha()
+                    * fresnel.relative(geometry.cos_gamma())
+                    * v_groove_over_cosines(&geometry),
+            );
+            criterion.tan2_alpha.push(geometry.tan2_alpha());
+        }
+        criterion.normalised()
+    }
+
+    /// The criterion over some of the readings: those whose index `keep` accepts.
+    pub fn subset(&self, keep: impl Fn(usize) -> bool) -> Result<Self, CriterionError> {
+        let mut criterion = Self::with_capacity(self.len());
+        for i in (0..self.len()).filter(|&i| keep(i)) {
+            criterion.measured.push(self.measured[i]);
+            criterion.diffuse.push(self.diffuse[i]);
+            criterion.specular.push(self.specular[i]);
+            criterion.tan2_alpha.push(self.tan2_alpha[i]);
+        }
+        criterion.normalised()
+    }
+
+    /// How many readings there are.
+    pub fn len(&self) -> usize {
+        self.measured.len()
+    }
+
+    /// Whether there are no readings.
+    pub fn is_empty(&self) -> bool {
+        self.measured.is_empty()
+    }
+
+    /// E, as a fraction (times 100: the paper's percent).
+    pub fn error(&self, parameters: &Parameters) -> f64 {
+        let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
+        let k1_squared = k1 * k1;
+        self.sum(|y, a, s, t| {
+            let residual = y - kd * a - k2 * s * (k1_squared / (t + k1_squared));
+            [residual * residual]
+        })[0]
+    }
+
+    /// The terms under the sum of E before they are squared: model - measured and measured, for
+    /// each reading.
+    pub fn residuals(&self, parameters: &Parameters) -> impl Iterator<Item = (f64, f64)> {
+        let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
+        let k1_squared = k1 * k1;
+        (0..self.len()).map(move |i| {
+            let (y, a) = (self.measured[i], self.diffuse[i]);
+            let u = self.specular[i] * (k1_squared / (self.tan2_alpha[i] + k1_squared));
+            (k2 * u + kd * a - y, y)
+        })
+    }
+
+    /// E with J^T r and J^T J for the residuals r = model - measured.
+    pub fn normal_equations(&self, parameters: &Parameters) -> NormalEquations<3> {
+        let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
+        let k1_squared = k1 * k1;
+        let [rr, ur, ar, vr, uu, ua, uv, av, vv] = self.sum(|y, a, s, t| {
+            let reciprocal = 1.0 / (t + k1_squared);
+            let u = s * (k1_squared * reciprocal);
+            // d(u)/d(k1) = 2 u t / (k1 (t + k1^2)); the factor 2 k2/k1 is put on afterwards.
+            let v = u * (t * reciprocal);
+            let r = k2 * u + kd * a - y;
+            [
+                r * r,
+                u * r,
+                a * r,
+                v * r,
+                u * u,
+                u * a,
+                u * v,
+                a * v,
+                v * v,
+            ]
+        });
+        let f = 2.0 * k2 / k1;
+        NormalEquations {
+            error: rr,
+            gradient: Vector3::new(ur, ar, f * vr),
+            matrix: Matrix3::new(
+                uu,
+                ua,
+                f * uv,
+                ua,
+                self.diffuse_squared,
+                f * av,
+                f * uv,
+                f * av,
+                f * f * vv,
+            ),
+        }
+    }
+
+    pub(crate) fn profile_sums(&self, k1: f64) -> ProfileSums {
+        let k1_squared = k1 * k1;
+        let [uu, ua, uy] = self.sum(|y, a, s, t| {
+            let u = s * (k1_squared / (t + k1_squared));
+            [u * u, u * a, u * y]
+        });
+        ProfileSums {
+            uu,
+            ua,
+            uy,
+            aa: self.diffuse_squared,
+            ay: self.diffuse_measured,
+        }
+    }
+
+    /// kD of the best Lambertian description, negative readings included.
+    pub(crate) fn lambertian_weight(&self) -> f64 {
+        self.diffuse_measured / self.diffuse_squared
+    }
+
+    /// Sums over all readings of what `term(y, a, s, t)` gives for each.
+    ///
+    /// Four running sums side by side: they do not wait for each other, and come out the same on
+    /// every processor.
+    fn sum<const N: usize>(&self, term: impl Fn(f64, f64, f64, f64) -> [f64; N]) -> [f64; N] {
+        const LANES: usize = 4;
+        let mut sums = [[0.0; LANES]; N];
+        let columns = [
+            &self.measured,
+            &self.diffuse,
+            &self.specular,
+            &self.tan2_alpha,
+        ];
+        let [y, a, s, t] = columns.map(|column| column.as_chunks::<LANES>());
+        for (((y, a), s), t) in y.0.iter().zip(a.0).zip(s.0).zip(t.0) {
+            for lane in 0..LANES {
+                let terms = term(y[lane], a[lane], s[lane], t[lane]);
+                for (sum, term) in sums.iter_mut().zip(terms) {
+                    sum[lane] += term;
+                }
+            }
+        }
+        for (lane, (((y, a), s), t)) in y.1.iter().zip(a.1).zip(s.1).zip(t.1).enumerate() {
+            for (sum, term) in sums.iter_mut().zip(term(*y, *a, *s, *t)) {
+                sum[lane] += term;
+            }
+        }
+        sums.map(|[a, b, c, d]| (a + b) + (c + d))
+    }
+
+    fn with_capacity(readings: usize) -> Self {
+        let column = || Vec::with_capacity(readings);
+        Self {
+            measured: column(),
+            diffuse: column(),
+            specular: column(),
+            tan2_alpha: column(),
+            diffuse_squared: 0.0,
+            diffuse_measured: 0.0,
+        }
+    }
+
+    /// Divides by the denominator of E, and sums what does not depend on the parameters.
+    fn normalised(mut self) -> Result<Self, CriterionError> {
+        // The largest value first, so that the squares neither overflow nor vanish.
+        let largest = self
+            .measured
+            .iter()
+            .fold(0.0_f64, |max, y| max.max(y.abs()));
+        if largest == 0.0 {
+            return Err(CriterionError::AllZero);
+        }
+        let norm = largest * self.sum(|y, _, _, _| [(y / largest).powi(2)])[0].sqrt();
+        for column in [&mut self.measured, &mut self.diffuse, &mut self.specular] {
+            column.iter_mut().for_each(|value| *value /= norm);
+        }
+        [self.diffuse_squared, self.diffuse_measured] = self.sum(|y, a, _, _| [a * a, a * y]);
+        Ok(self)
+    }
+}

@@ -1,0 +1,248 @@
+//! Readings of a goniometer, validated and in the model's convention.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use brdf_core::{Geometry, GeometryError};
+use serde::{Deserialize, Serialize};
+
+use crate::refractive_index::RefractiveIndex;
+
+/// One reading. Angles in radians in the model's convention: a positive theta at phi = 0 is the
+/// source's side of the normal.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// Wavelength in micrometres, where the scan states one.
+    pub wavelength_um: Option<f64>,
+    /// Incidence zenith angle psi in [0, pi/2).
+    pub psi: f64,
+    /// View zenith angle theta in (-pi/2, pi/2), signed.
+    pub theta: f64,
+    /// View azimuth phi from the source's azimuth.
+    pub phi: f64,
+    /// Measured f_r in 1/sr; negative values are noise and are kept.
+    pub brdf: f64,
+    /// Standard deviation of the reading in 1/sr, where the scan states one.
+    pub sigma: Option<f64>,
+}
+
+/// Why a reading is refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MeasurementError {
+    /// Angles outside the model's domain.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// A wavelength that is not positive.
+    #[error("wavelength {0} um: expected a positive number")]
+    Wavelength(f64),
+    /// A reading that is not a finite number.
+    #[error("BRDF reading {0} 1/sr: expected a finite number")]
+    Brdf(f64),
+    /// A standard deviation that is not positive.
+    #[error("standard deviation {0} 1/sr: expected a positive number")]
+    Sigma(f64),
+}
+
+impl Measurement {
+    /// Checks the domain of every value.
+    pub fn validated(self) -> Result<Self, MeasurementError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        if !(0.0..=FRAC_PI_2).contains(&self.psi) {
+            return Err(GeometryError::Incidence(self.psi).into());
+        }
+        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&self.theta) {
+            return Err(GeometryError::View(self.theta).into());
+        }
+        if !self.phi.is_finite() {
+            return Err(GeometryError::Azimuth(self.phi).into());
+        }
+        if let Some(wavelength) = self.wavelength_um.filter(|&w| !positive(w)) {
+            return Err(MeasurementError::Wavelength(wavelength));
+        }
+        if !self.brdf.is_finite() {
+            return Err(MeasurementError::Brdf(self.brdf));
+        }
+        if let Some(sigma) = self.sigma.filter(|&s| !positive(s)) {
+            return Err(MeasurementError::Sigma(sigma));
+        }
+        Ok(self)
+    }
+
+    /// The geometry of the reading.
+    pub fn geometry(&self) -> Result<Geometry, GeometryError> {
+        Geometry::new(self.psi, self.theta, self.phi)
+    }
+
+    /// The signed view angle in the plane of incidence, in radians; `None` out of the plane, by
+    /// more than 1e-6 rad of azimuth.
+    pub fn in_plane_theta(&self) -> Option<f64> {
+        let turns = self.phi / PI;
+        let nearest = turns.round();
+        if (turns - nearest).abs() * PI > 1e-6 && self.theta != 0.0 {
+            return None;
+        }
+        let forward = nearest.rem_euclid(2.0) == 1.0;
+        Some(if forward { -self.theta } else { self.theta })
+    }
+}
+
+/// What a file says of itself in its `# key: value` lines, in their order. Keys are in lower case.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Metadata(pub Vec<(String, String)>);
+
+impl Metadata {
+    /// The value of a key, the first one where it stands more than once.
+    pub fn get(&self, key: &str) -> Option<&str> {
+        self.0
+            .iter()
+            .find(|(name, _)| name == key)
+            .map(|(_, value)| value.as_str())
+    }
+}
+
+/// The readings of one scan, with what its file says of them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Measurements {
+    /// Where the readings come from: the path of a file, or what the caller says.
+    pub source: String,
+    /// What the file says of itself.
+    pub metadata: Metadata,
+    /// The refractive index that the file gives.
+    pub refractive_index: Option<RefractiveIndex>,
+    /// Columns of the file that were not used.
+    pub ignored_columns: Vec<String>,
+    pub(crate) readings: Vec<Measurement>,
+}
+
+impl Measurements {
+    /// Measurements from readings that did not come from a file.
+    ///
+    /// Errors: the first reading that is outside the domain.
+    pub fn new(
+        source: impl Into<String>,
+        readings: Vec<Measurement>,
+    ) -> Result<Self, MeasurementError> {
+        let readings = readings
+            .into_iter()
+            .map(Measurement::validated)
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            source: source.into(),
+            readings,
+            ..Self::default()
+        })
+    }
+
+    /// All readings, in the order of the file.
+    pub fn readings(&self) -> &[Measurement] {
+        &self.readings
+    }
+
+    /// The wavelengths in micrometres, ascending; a single `None` where the scan states none.
+    pub fn wavelengths(&self) -> Vec<Option<f64>> {
+        let mut all: Vec<Option<f64>> = Vec::new();
+        for reading in &self.readings {
+            // Files keep a wavelength together: looking at the last one first makes this linear.
+            if all.last() != Some(&reading.wavelength_um) && !all.contains(&reading.wavelength_um) {
+                all.push(reading.wavelength_um);
+            }
+        }
+        all.sort_by(|a, b| {
+            a.partial_cmp(b)
+                .expect("wavelengths were checked not to be NaN")
+        });
+        all
+    }
+
+    /// The readings of each wavelength by themselves, in ascending order of wavelength.
+    pub fn by_wavelength(&self) -> Vec<Self> {
+        self.wavelengths()
+            .into_iter()
+            .map(|wavelength| Self {
+                readings: self
+                    .readings
+                    .iter()
+                    .filter(|reading| reading.wavelength_um == wavelength)
+                    .copied()
+                    .collect(),
+                ..self.without_readings()
+            })
+            .collect()
+    }
+
+    /// The incidence angles psi in radians, ascending.
+    pub fn incidences(&self) -> Vec<f64> {
+        let mut angles: Vec<f64> = self.readings.iter().map(|reading| reading.psi).collect();
+        angles.sort_by(f64::total_cmp);
+        angles.dedup();
+        angles
+    }
+
+    fn without_readings(&self) -> Self {
+        Self {
+            source: self.source.clone(),
+            metadata: self.metadata.clone(),
+            refractive_index: self.refractive_index.clone(),
+            ignored_columns: self.ignored_columns.clone(),
+            readings: Vec::new(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reading(wavelength_um: f64, psi: f64, theta: f64, phi: f64) -> Measurement {
+        Measurement {
+            wavelength_um: Some(wavelength_um),
+            psi,
+            theta,
+            phi,
+            brdf: 0.1,
+            sigma: None,
+        }
+    }
+
+    #[test]
+    fn wavelengths_are_split_and_sorted() {
+        let readings = vec![
+            reading(0.85, 0.1, 0.0, 0.0),
+            reading(0.63, 0.3, 0.0, 0.0),
+            reading(0.85, 0.2, 0.0, 0.0),
+        ];
+        let scan = Measurements::new("test", readings).unwrap();
+        assert_eq!(scan.wavelengths(), [Some(0.63), Some(0.85)]);
+        let split = scan.by_wavelength();
+        assert_eq!(split[0].readings().len(), 1);
+        assert_eq!(split[1].incidences(), [0.1, 0.2]);
+    }
+
+    #[test]
+    fn the_plane_of_incidence_is_recognised() {
+        assert_eq!(reading(1.0, 0.1, 0.4, 0.0).in_plane_theta(), Some(0.4));
+        assert_eq!(reading(1.0, 0.1, 0.4, PI).in_plane_theta(), Some(-0.4));
+        assert_eq!(
+            reading(1.0, 0.1, -0.4, 3.0 * PI).in_plane_theta(),
+            Some(0.4)
+        );
+        assert_eq!(reading(1.0, 0.1, 0.4, 1.0).in_plane_theta(), None);
+        assert_eq!(reading(1.0, 0.1, 0.0, 1.0).in_plane_theta(), Some(0.0));
+    }
+
+    #[test]
+    fn values_outside_the_domain_are_named() {
+        let message = |change: &dyn Fn(&mut Measurement)| {
+            let mut bad = reading(1.0, 0.1, 0.2, 0.0);
+            change(&mut bad);
+            Measurements::new("test", vec![bad])
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(message(&|m| m.psi = 1.6).contains("psi = 1.6"));
+        assert!(message(&|m| m.theta = f64::NAN).contains("theta = NaN"));
+        assert!(message(&|m| m.phi = f64::INFINITY).contains("phi = inf"));
+        assert!(message(&|m| m.wavelength_um = Some(-1.0)).contains("wavelength -1"));
+        assert!(message(&|m| m.brdf = f64::NAN).contains("NaN 1/sr"));
+        assert!(message(&|m| m.sigma = Some(0.0)).contains("deviation 0"));
+    }
+}

@@ -1,0 +1,135 @@
+//! The exact minimum over k2 and kD for a given k1, and the search over k1 that checks each fit
+//! against the global optimum.
+//!
+//! For a fixed k1 the model is linear in k2 and kD, so E has one minimum over k2 >= 0, kD >= 0,
+//! which is known in closed form. What remains is a function of k1 alone, the profile.
+
+use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::solver::brent::BrentOpt;
+use brdf_core::Parameters;
+use serde::{Deserialize, Serialize};
+
+use crate::criterion::{Criterion, ProfileSums};
+use crate::solver::K1_RANGE;
+
+/// Steps of the search in ln k1. As a function of ln k1 the model has its nearest singularity at
+/// a distance of pi/2 in the complex plane, so its profile cannot have features much narrower.
+const STEP: f64 = 0.25;
+
+/// A minimum is refined until ln k1 is known to this; E is then known to its rounding.
+const REFINED: f64 = 1e-8;
+
+/// The profile at one k1: the best weights there, and E with them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ProfilePoint {
+    /// k2, kD and k1.
+    pub parameters: Parameters,
+    /// E as a fraction.
+    pub error: f64,
+}
+
+/// E minimised over k2 >= 0 and kD >= 0 at the given k1.
+pub fn best_weights(criterion: &Criterion, k1: f64) -> ProfilePoint {
+    let (k2, kd, error) = solve(&criterion.profile_sums(k1));
+    ProfilePoint {
+        parameters: Parameters { k2, kd, k1 },
+        error,
+    }
+}
+
+/// k2, kD and E of the best weights.
+///
+/// Either both are positive and the normal equations hold for both, or one is zero and the other
+/// is the best by itself.
+fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
+    let &ProfileSums { uu, ua, uy, aa, ay } = sums;
+    let determinant = uu * aa - ua * ua;
+    // Collinear to rounding: the two parts cannot be told apart, and one of them does as well.
+    if determinant > 1e-14 * uu * aa {
+        let k2 = (uy * aa - ay * ua) / determinant;
+        let kd = (ay * uu - uy * ua) / determinant;
+        if k2 >= 0.0 && kd >= 0.0 {
+            return (k2, kd, 1.0 - k2 * uy - kd * ay);
+        }
+    }
+    let specular = if uu > 0.0 { (uy / uu).max(0.0) } else { 0.0 };
+    let diffuse = (ay / aa).max(0.0);
+    if specular * uy > diffuse * ay {
+        (specular, 0.0, 1.0 - specular * uy)
+    } else {
+        (0.0, diffuse, 1.0 - diffuse * ay)
+    }
+}
+
+/// The profile over the whole range of k1, with its minima.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// Points in equal steps of ln k1.
+    pub points: Vec<ProfilePoint>,
+}
+
+impl Profile {
+    /// Evaluates the profile over [`K1_RANGE`].
+    pub fn search(criterion: &Criterion) -> Self {
+        let (from, to) = (K1_RANGE.0.ln(), K1_RANGE.1.ln());
+        let steps = ((to - from) / STEP).ceil();
+        let points = (0..=steps as u32)
+            .map(|i| {
+                let log_k1 = from + (to - from) * f64::from(i) / steps;
+                best_weights(criterion, log_k1.exp().clamp(K1_RANGE.0, K1_RANGE.1))
+            })
+            .collect();
+        Self { points }
+    }
+
+    /// The lowest minimum, each local one refined.
+    pub fn global_minimum(&self, criterion: &Criterion) -> ProfilePoint {
+        let last = self.points.len() - 1;
+        let error = |i: usize| self.points[i].error;
+        (0..=last)
+            .filter(|&i| {
+                (i == 0 || error(i) <= error(i - 1)) && (i == last || error(i) < error(i + 1))
+            })
+            .map(|i| {
+                let left = self.points[i.saturating_sub(1)];
+                let right = self.points[(i + 1).min(last)];
+                refine(criterion, left, self.points[i], right)
+            })
+            .min_by(|a, b| a.error.total_cmp(&b.error))
+            .unwrap_or(self.points[0])
+    }
+}
+
+/// The minimum between the neighbours of a lowest point, by Brent's method in ln k1.
+fn refine(
+    criterion: &Criterion,
+    left: ProfilePoint,
+    lowest: ProfilePoint,
+    right: ProfilePoint,
+) -> ProfilePoint {
+    let log_k1 = |point: ProfilePoint| point.parameters.k1.ln();
+    let solver = BrentOpt::new(log_k1(left), log_k1(right)).set_tolerance(REFINED, REFINED);
+    let found = Executor::new(InLogK1(criterion), solver)
+        .configure(|state| state.max_iters(100))
+        .ctrlc(false)
+        .run()
+        .ok()
+        .and_then(|result| result.state.get_best_param().copied());
+    // At the ends of the range the lowest point may be the end itself.
+    found
+        .map(|log_k1| best_weights(criterion, log_k1.exp().clamp(K1_RANGE.0, K1_RANGE.1)))
+        .filter(|point| point.error < lowest.error)
+        .unwrap_or(lowest)
+}
+
+/// The profile as a function of ln k1.
+struct InLogK1<'a>(&'a Criterion);
+
+impl CostFunction for InLogK1<'_> {
+    type Param = f64;
+    type Output = f64;
+
+    fn cost(&self, log_k1: &f64) -> Result<f64, Error> {
+        Ok(best_weights(self.0, log_k1.exp()).error)
+    }
+}

@@ -1,0 +1,780 @@
+//! Tables of readings as text: separated by commas, semicolons or tabs.
+//!
+//! | column | unit | |
+//! |---|---|---|
+//! | `psi_deg` | deg, [0, 90) | incidence zenith angle |
+//! | `theta_deg` | deg, (-90, 90) | view zenith angle, signed in the plane of incidence |
+//! | `brdf_per_sr` | 1/sr | the reading, in the quantity of the header |
+//! | `wavelength_um` | um, > 0 | optional |
+//! | `phi_deg` | deg | optional, 0 where it is missing |
+//! | `sigma_per_sr` | 1/sr, > 0 | optional, in the same quantity as the reading |
+//! | `n` | [1, 1e5] | optional, one value for each wavelength |
+//!
+//! Columns are found by their names, in any order; others are left out and listed. Lines that
+//! begin with `#` are comments; `# key: value` is kept as metadata. `# quantity:` may be `brdf`
+//! (f_r, also where nothing is said), `brdf_cos` (f_r cos theta) or `reflectance_factor` (pi f_r)
+//! and is converted once, here. `# refractive_index: 1.5` or `0.63=1.60,0.85=1.58` gives n.
+//! A decimal comma is understood where the separator is not a comma. A byte order mark and the
+//! line ends of any system are understood.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use brdf_core::brdf::check_refractive_index;
+use csv::ByteRecord;
+
+use super::{Convention, ReadError, Side};
+use crate::measurement::{Measurement, Measurements, Metadata};
+use crate::refractive_index::RefractiveIndex;
+
+/// A longer line is not a line of readings.
+const MAX_LINE: usize = 65_536;
+
+/// A larger file is not a scan; the limit keeps an endless input from filling the memory.
+const MAX_FILE: u64 = 4 << 30;
+
+/// How much is read before the next look at the length of the lines.
+const CHUNK: u64 = 1 << 20;
+
+impl Measurements {
+    /// Reads a file in the model's convention.
+    ///
+    /// Errors name the file, the line, the column and the value, and say what was expected.
+    pub fn read_csv(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        Self::read_csv_with(path, Convention::default())
+    }
+
+    /// Reads a file in another angular convention.
+    pub fn read_csv_with(
+        path: impl AsRef<Path>,
+        convention: Convention,
+    ) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        let io = |error| ReadError::Io {
+            path: path.to_owned(),
+            error,
+        };
+        let file = File::open(path).map_err(io)?;
+        let size = file.metadata().map_err(io)?.len();
+        read(file, size, path, convention)
+    }
+
+    /// Reads from anything that yields the text of such a file, in the model's convention.
+    pub fn from_reader(reader: impl Read) -> Result<Self, ReadError> {
+        Self::from_reader_with(reader, "input", Convention::default())
+    }
+
+    /// Reads from anything that yields the text of such a file; `name` stands for the file in
+    /// errors and reports.
+    pub fn from_reader_with(
+        reader: impl Read,
+        name: &str,
+        convention: Convention,
+    ) -> Result<Self, ReadError> {
+        read(reader, 0, Path::new(name), convention)
+    }
+}
+
+fn read(
+    reader: impl Read,
+    expected_size: u64,
+    path: &Path,
+    convention: Convention,
+) -> Result<Measurements, ReadError> {
+    let bytes = read_bytes(reader, expected_size).map_err(|error| ReadError::Io {
+        path: path.to_owned(),
+        error,
+    })?;
+    let input = Input {
+        path,
+        text: text_of(&bytes).map_err(|message| file_error(path, message))?,
+    };
+    let preamble = input.preamble()?;
+    input.measurements(preamble, convention)
+}
+
+/// Everything, up to the point where it is clear that it is not a table.
+fn read_bytes(mut reader: impl Read, expected_size: u64) -> std::io::Result<Vec<u8>> {
+    let capacity = usize::try_from(expected_size.min(MAX_FILE)).unwrap_or(0);
+    let mut bytes = Vec::with_capacity(capacity + 1);
+    while (bytes.len() as u64) <= MAX_FILE {
+        if reader.by_ref().take(CHUNK).read_to_end(&mut bytes)? == 0 {
+            break;
+        }
+        let tail = &bytes[bytes.len().saturating_sub(MAX_LINE + 1)..];
+        if tail.len() > MAX_LINE && !tail.iter().any(|&byte| is_line_end(byte)) {
+            break;
+        }
+    }
+    Ok(bytes)
+}
+
+fn is_line_end(byte: u8) -> bool {
+    byte == b'\n' || byte == b'\r'
+}
+
+/// The text without its byte order mark, or why it is none.
+fn text_of(bytes: &[u8]) -> Result<&[u8], &'static str> {
+    if bytes.len() as u64 > MAX_FILE {
+        return Err("is larger than 4 GiB: expected a table of readings");
+    }
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err("is in UTF-16: expected plain text or UTF-8 (save it as \"CSV UTF-8\")");
+    }
+    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let is_control = |byte: &u8| *byte < 32 && !b"\t\n\r\x0c\x1a".contains(byte);
+    if text.iter().take(8192).any(is_control) {
+        return Err("is binary data: expected a table of readings as text");
+    }
+    if text.iter().all(u8::is_ascii_whitespace) {
+        return Err(
+            "is empty: expected a header with psi_deg, theta_deg and brdf_per_sr, and readings",
+        );
+    }
+    Ok(text)
+}
+
+fn file_error(path: &Path, message: impl Into<String>) -> ReadError {
+    ReadError::File {
+        path: path.to_owned(),
+        message: message.into(),
+    }
+}
+
+/// The text of a file, and the file that errors are about.
+#[derive(Clone, Copy)]
+struct Input<'a> {
+    path: &'a Path,
+    text: &'a [u8],
+}
+
+/// What the comments and the header line say.
+struct Preamble {
+    metadata: Metadata,
+    quantity: Quantity,
+    refractive_index: Option<RefractiveIndex>,
+    /// Where the header starts in the text.
+    header_start: usize,
+    /// The number of the header's line, from 1.
+    header_line: u64,
+    separator: u8,
+    /// Lines after the header: as many readings at the most.
+    lines_after: usize,
+}
+
+/// The quantity that the readings of a file are, by its header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Quantity {
+    Brdf,
+    BrdfCos,
+    ReflectanceFactor,
+}
+
+impl Quantity {
+    fn parse(text: &str) -> Option<Self> {
+        match text {
+            "brdf" => Some(Self::Brdf),
+            "brdf_cos" => Some(Self::BrdfCos),
+            "reflectance_factor" => Some(Self::ReflectanceFactor),
+            _ => None,
+        }
+    }
+
+    /// f_r of a reading.
+    fn to_brdf(self, reading: f64, theta: f64) -> f64 {
+        match self {
+            Self::Brdf => reading,
+            Self::BrdfCos => reading / theta.cos(),
+            Self::ReflectanceFactor => reading / std::f64::consts::PI,
+        }
+    }
+}
+
+impl Input<'_> {
+    /// Looks at each line once: its length, the metadata of comments, and where the header is.
+    fn preamble(&self) -> Result<Preamble, ReadError> {
+        let mut metadata = Metadata::default();
+        let mut quantity = Quantity::Brdf;
+        let mut refractive_index = None;
+        let mut header = None;
+        let mut lines_after = 0;
+        for (number, start, line) in self.lines() {
+            if line.len() > MAX_LINE {
+                return Err(self.line_error(
+                    number,
+                    format!(
+                        "the line is longer than {MAX_LINE} bytes: expected a table of readings"
+                    ),
+                ));
+            }
+            if let Some(comment) = comment_of(line) {
+                let Some((key, value)) = key_and_value(&comment) else {
+                    continue;
+                };
+                match key.as_str() {
+                    "quantity" => quantity = self.quantity(number, &value)?,
+                    "refractive_index" => {
+                        let parsed = value.parse().map_err(|error| {
+                            self.line_error(number, format!("refractive_index: {error}"))
+                        })?;
+                        refractive_index = Some(parsed);
+                    }
+                    _ => {}
+                }
+                metadata.0.push((key, value));
+            } else if header.is_some() {
+                lines_after += 1;
+            } else if !line.trim_ascii().is_empty() && !line.starts_with(b"sep=") {
+                header = Some((number, start, separator_of(line)));
+            }
+        }
+        let (header_line, header_start, separator) = header.ok_or_else(|| {
+            file_error(
+                self.path,
+                "has no header: expected a line with psi_deg, theta_deg and brdf_per_sr",
+            )
+        })?;
+        Ok(Preamble {
+            metadata,
+            quantity,
+            refractive_index,
+            header_start,
+            header_line,
+            separator,
+            lines_after,
+        })
+    }
+
+    /// Number, start and text of each line; a line ends with LF, CR or CR LF.
+    fn lines(&self) -> impl Iterator<Item = (u64, usize, &[u8])> {
+        let mut start = 0;
+        let mut number = 0;
+        std::iter::from_fn(move || {
+            if start >= self.text.len() {
+                return None;
+            }
+            let rest = &self.text[start..];
+            let end = rest
+                .iter()
+                .position(|&byte| is_line_end(byte))
+                .unwrap_or(rest.len());
+            let line_start = start;
+            let ends_in_crlf = rest[end..].starts_with(b"\r\n");
+            start += end + if ends_in_crlf { 2 } else { 1 };
+            number += 1;
+            Some((number, line_start, &rest[..end]))
+        })
+    }
+
+    fn quantity(&self, line: u64, value: &str) -> Result<Quantity, ReadError> {
+        Quantity::parse(value).ok_or_else(|| {
+            self.line_error(
+                line,
+                format!("quantity \"{value}\" is not known: expected brdf, brdf_cos or reflectance_factor"),
+            )
+        })
+    }
+
+    fn measurements(
+        &self,
+        preamble: Preamble,
+        convention: Convention,
+    ) -> Result<Measurements, ReadError> {
+        let mut records = csv::ReaderBuilder::new()
+            .delimiter(preamble.separator)
+            .comment(Some(b'#'))
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(&self.text[preamble.header_start..]);
+        let mut record = ByteRecord::new();
+        let not_text = |error: csv::Error| file_error(self.path, error.to_string());
+        records.read_byte_record(&mut record).map_err(not_text)?;
+        let columns = Columns::find(&record)
+            .map_err(|message| self.line_error(preamble.header_line, message))?;
+        let mut readings = Vec::with_capacity(preamble.lines_after);
+        let mut indices = IndexColumn::default();
+        while records.read_byte_record(&mut record).map_err(not_text)? {
+            if record.iter().all(|field| field.trim_ascii().is_empty())
+                || record.get(0).is_some_and(|field| field.starts_with(b"#"))
+            {
+                continue;
+            }
+            let line = record.position().map_or(0, csv::Position::line) + preamble.header_line - 1;
+            let row = Row {
+                input: self,
+                line,
+                record: &record,
+                decimal_comma: preamble.separator != b',',
+            };
+            row.check_length(columns.count)?;
+            let reading = row.reading(&columns, preamble.quantity, convention)?;
+            if let Some(column) = columns.n {
+                indices.add(&row, column, reading.wavelength_um)?;
+            }
+            readings.push(reading);
+        }
+        if readings.is_empty() {
+            let message = "no readings follow the header".to_owned();
+            return Err(self.line_error(preamble.header_line, message));
+        }
+        Ok(Measurements {
+            source: self.path.display().to_string(),
+            metadata: preamble.metadata,
+            refractive_index: indices.refractive_index().or(preamble.refractive_index),
+            ignored_columns: columns.ignored,
+            readings,
+        })
+    }
+
+    fn line_error(&self, line: u64, message: String) -> ReadError {
+        ReadError::Line {
+            path: self.path.to_owned(),
+            line,
+            message,
+        }
+    }
+}
+
+/// The text of a comment line, also of one that a spreadsheet has put into quotes.
+fn comment_of(line: &[u8]) -> Option<String> {
+    let comment = line
+        .strip_prefix(b"#")
+        .or_else(|| line.strip_prefix(b"\"#"))?;
+    Some(String::from_utf8_lossy(comment).into_owned())
+}
+
+/// `key: value` of a comment; separators that a spreadsheet has put behind it are left out.
+fn key_and_value(comment: &str) -> Option<(String, String)> {
+    let (key, value) = comment.split_once(':')?;
+    let key = key.trim().to_lowercase();
+    let value = value
+        .trim()
+        .trim_end_matches([',', ';', '\t', '"'])
+        .trim_end();
+    let is_word = !key.is_empty() && !key.contains(char::is_whitespace);
+    is_word.then(|| (key, value.to_owned()))
+}
+
+/// The most frequent of the separators in the header line.
+fn separator_of(header: &[u8]) -> u8 {
+    let count = |separator: u8| header.iter().filter(|&&byte| byte == separator).count();
+    // Of equals the last one is taken: a comma.
+    *b"\t;,"
+        .iter()
+        .max_by_key(|&&separator| count(separator))
+        .unwrap_or(&b',')
+}
+
+/// Where each quantity stands in a row.
+struct Columns {
+    count: usize,
+    psi: usize,
+    theta: usize,
+    brdf: usize,
+    wavelength: Option<usize>,
+    phi: Option<usize>,
+    sigma: Option<usize>,
+    n: Option<usize>,
+    ignored: Vec<String>,
+}
+
+const WAVELENGTH: &str = "wavelength_um";
+const PSI: &str = "psi_deg";
+const THETA: &str = "theta_deg";
+const PHI: &str = "phi_deg";
+const BRDF: &str = "brdf_per_sr";
+const SIGMA: &str = "sigma_per_sr";
+const INDEX: &str = "n";
+
+impl Columns {
+    fn find(header: &ByteRecord) -> Result<Self, String> {
+        let names: Vec<String> = header
+            .iter()
+            .map(|field| String::from_utf8_lossy(field.trim_ascii()).to_lowercase())
+            .collect();
+        let known = [WAVELENGTH, PSI, THETA, PHI, BRDF, SIGMA, INDEX];
+        if let Some(twice) = known
+            .iter()
+            .find(|k| names.iter().filter(|n| n == *k).count() > 1)
+        {
+            return Err(format!("column {twice} stands there twice"));
+        }
+        let position = |name: &str| names.iter().position(|n| n == name);
+        let missing: Vec<&str> = [PSI, THETA, BRDF]
+            .into_iter()
+            .filter(|name| position(name).is_none())
+            .collect();
+        let (Some(psi), Some(theta), Some(brdf)) = (position(PSI), position(THETA), position(BRDF))
+        else {
+            return Err(format!(
+                "missing column {}: expected a header with psi_deg, theta_deg and brdf_per_sr, found \"{}\"",
+                missing.join(" and "),
+                shown(names.join("\", \"").as_bytes()),
+            ));
+        };
+        Ok(Self {
+            count: names.len(),
+            psi,
+            theta,
+            brdf,
+            wavelength: position(WAVELENGTH),
+            phi: position(PHI),
+            sigma: position(SIGMA),
+            n: position(INDEX),
+            ignored: names
+                .iter()
+                .filter(|name| !name.is_empty() && !known.contains(&name.as_str()))
+                .cloned()
+                .collect(),
+        })
+    }
+}
+
+/// A field as it is quoted in an error: not too long, and printable.
+fn shown(field: &[u8]) -> String {
+    const LONGEST: usize = 60;
+    let text = String::from_utf8_lossy(field)
+        .trim()
+        .escape_debug()
+        .to_string();
+    if text.chars().count() <= LONGEST {
+        return text;
+    }
+    text.chars().take(LONGEST).chain("...".chars()).collect()
+}
+
+/// One line of readings.
+struct Row<'a> {
+    input: &'a Input<'a>,
+    line: u64,
+    record: &'a ByteRecord,
+    decimal_comma: bool,
+}
+
+impl Row<'_> {
+    fn check_length(&self, expected: usize) -> Result<(), ReadError> {
+        let surplus = self
+            .record
+            .iter()
+            .skip(expected)
+            .any(|field| !field.trim_ascii().is_empty());
+        if surplus {
+            let found = self.record.len();
+            let message = format!("{found} fields: expected {expected}, as in the header");
+            return Err(self.input.line_error(self.line, message));
+        }
+        Ok(())
+    }
+
+    fn reading(
+        &self,
+        columns: &Columns,
+        quantity: Quantity,
+        convention: Convention,
+    ) -> Result<Measurement, ReadError> {
+        let positive = |x: f64| x > 0.0;
+        let optional = |column: Option<usize>, name, expected, accepts: fn(f64) -> bool| {
+            column
+                .map(|column| self.value(column, name, expected, accepts))
+                .transpose()
+        };
+        let wavelength_um = optional(
+            columns.wavelength,
+            WAVELENGTH,
+            "expected micrometres above 0",
+            positive,
+        )?;
+        let psi_deg = self.value(
+            columns.psi,
+            PSI,
+            "expected degrees from 0 to below 90",
+            |x| (0.0..90.0).contains(&x),
+        )?;
+        let theta_deg = self.value(
+            columns.theta,
+            THETA,
+            "expected degrees between -90 and 90",
+            |x| x.abs() < 90.0,
+        )?;
+        let phi_deg = optional(columns.phi, PHI, "expected degrees", |_| true)?.unwrap_or(0.0);
+        let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", |_| true)?;
+        let sigma = optional(columns.sigma, SIGMA, "expected 1/sr above 0", positive)?;
+
+        let theta = match convention.theta_positive {
+            Side::Source => theta_deg,
+            Side::Forward => -theta_deg,
+        }
+        .to_radians();
+        // In degrees, so that 180 deg remains what it is.
+        let phi = match convention.phi_zero {
+            Side::Source => phi_deg,
+            Side::Forward => phi_deg + 180.0,
+        }
+        .to_radians();
+        Ok(Measurement {
+            wavelength_um,
+            psi: psi_deg.to_radians(),
+            theta,
+            phi,
+            brdf: quantity.to_brdf(reading, theta),
+            sigma: sigma.map(|sigma| quantity.to_brdf(sigma, theta)),
+        })
+    }
+
+    /// The number in a column, if `accepts` holds for it.
+    fn value(
+        &self,
+        column: usize,
+        name: &'static str,
+        expected: &str,
+        accepts: impl Fn(f64) -> bool,
+    ) -> Result<f64, ReadError> {
+        let field = self.record.get(column).unwrap_or_default();
+        let problem = match parse_number(field, self.decimal_comma) {
+            Some(value) if !value.is_finite() => "is not a finite number",
+            Some(value) if accepts(value) => return Ok(value),
+            Some(_) => "is out of range",
+            None if field.trim_ascii().is_empty() => "is missing",
+            None => "is not a number",
+        };
+        Err(ReadError::Value {
+            path: self.input.path.to_owned(),
+            line: self.line,
+            column: name,
+            value: shown(field),
+            message: format!("{problem}: {expected}"),
+        })
+    }
+}
+
+fn parse_number(field: &[u8], decimal_comma: bool) -> Option<f64> {
+    let text = std::str::from_utf8(field.trim_ascii()).ok()?;
+    match text.parse() {
+        Err(_) if decimal_comma && !text.contains('.') => text.replacen(',', ".", 1).parse().ok(),
+        result => result.ok(),
+    }
+}
+
+/// The refractive index of each wavelength, from the column n.
+#[derive(Default)]
+struct IndexColumn {
+    /// By the bits of the wavelength: those of positive numbers are in their order.
+    by_wavelength: BTreeMap<Option<u64>, f64>,
+}
+
+impl IndexColumn {
+    fn add(
+        &mut self,
+        row: &Row<'_>,
+        column: usize,
+        wavelength_um: Option<f64>,
+    ) -> Result<(), ReadError> {
+        let expected = "expected a refractive index from 1 to 1e5";
+        let n = row.value(column, INDEX, expected, |n| {
+            check_refractive_index(n).is_ok()
+        })?;
+        let before = *self
+            .by_wavelength
+            .entry(wavelength_um.map(f64::to_bits))
+            .or_insert(n);
+        if before == n {
+            return Ok(());
+        }
+        let message = format!("differs from {before}, given before at the same wavelength");
+        Err(ReadError::Value {
+            path: row.input.path.to_owned(),
+            line: row.line,
+            column: INDEX,
+            value: n.to_string(),
+            message,
+        })
+    }
+
+    fn refractive_index(&self) -> Option<RefractiveIndex> {
+        if let Some(n) = self.by_wavelength.get(&None) {
+            return Some(RefractiveIndex::Same(*n));
+        }
+        let list = self.by_wavelength.iter();
+        let list: Vec<_> = list
+            .filter_map(|(bits, n)| bits.map(|bits| (f64::from_bits(bits), *n)))
+            .collect();
+        (!list.is_empty()).then_some(RefractiveIndex::ByWavelength(list))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scan(text: &str) -> Measurements {
+        Measurements::from_reader(text.as_bytes()).unwrap()
+    }
+
+    fn error(text: impl AsRef<[u8]>) -> String {
+        Measurements::from_reader(text.as_ref())
+            .unwrap_err()
+            .to_string()
+    }
+
+    const HEADER: &str = "psi_deg,theta_deg,brdf_per_sr\n";
+
+    #[test]
+    fn columns_come_in_any_order() {
+        let text = "n,sigma_per_sr,brdf_per_sr,phi_deg,theta_deg,psi_deg,wavelength_um,comment\n\
+                    1.6,0.01,0.25,90,20,10,0.63,first\n";
+        let scan = scan(text);
+        let reading = scan.readings()[0];
+        assert_eq!(reading.wavelength_um, Some(0.63));
+        assert_eq!(reading.psi, 10_f64.to_radians());
+        assert_eq!(reading.theta, 20_f64.to_radians());
+        assert_eq!(reading.phi, 90_f64.to_radians());
+        assert_eq!(reading.brdf, 0.25);
+        assert_eq!(reading.sigma, Some(0.01));
+        assert_eq!(scan.refractive_index.unwrap().at(Some(0.63)), Some(1.6));
+        assert_eq!(scan.ignored_columns, ["comment"]);
+    }
+
+    #[test]
+    fn separators_and_line_ends_of_any_system_are_understood() {
+        let expected = scan("psi_deg,theta_deg,brdf_per_sr\n10,-20.5,0.25\n30,0,0.5\n");
+        for text in [
+            "psi_deg;theta_deg;brdf_per_sr\n10;-20.5;0.25\n30;0;0.5\n",
+            "psi_deg;theta_deg;brdf_per_sr\n10;-20,5;0,25\n30;0;0,5\n",
+            "psi_deg\ttheta_deg\tbrdf_per_sr\n10\t-20,5\t2,5e-1\n30\t0\t0.5\n",
+            "\u{feff}psi_deg,theta_deg,brdf_per_sr\r\n10,-20.5,0.25\r\n30,0,0.5",
+            "psi_deg,theta_deg,brdf_per_sr\r10,-20.5,0.25\r30,0,0.5\r",
+            "sep=;\nPSI_DEG; Theta_deg ;\"brdf_per_sr\"\n\n10; -20.5 ;\"0,25\"\n;;\n30;0;0.5;;\n",
+        ] {
+            assert_eq!(scan(text).readings(), expected.readings(), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn metadata_is_kept_wherever_it_stands() {
+        let text = "# sample: Paint, black\n# plain words\n\"# licence: MIT\",,\n\
+                    psi_deg,theta_deg,brdf_per_sr\n10,20,0.1\n# Note: late\n11,20,0.1\n";
+        let scan = scan(text);
+        assert_eq!(scan.metadata.get("sample"), Some("Paint, black"));
+        assert_eq!(scan.metadata.get("licence"), Some("MIT"));
+        assert_eq!(scan.metadata.get("note"), Some("late"));
+        assert_eq!(scan.readings().len(), 2);
+    }
+
+    #[test]
+    fn quantities_are_converted_once() {
+        let rows = "psi_deg,theta_deg,brdf_per_sr,sigma_per_sr\n10,60,0.5,0.1\n";
+        let reading =
+            |quantity: &str| scan(&format!("# quantity: {quantity}\n{rows}")).readings()[0];
+        assert_eq!(reading("brdf").brdf, 0.5);
+        assert!((reading("brdf_cos").brdf - 1.0).abs() < 1e-15);
+        assert!((reading("brdf_cos").sigma.unwrap() - 0.2).abs() < 1e-15);
+        assert!((reading("reflectance_factor").brdf - 0.5 / std::f64::consts::PI).abs() < 1e-16);
+    }
+
+    #[test]
+    fn other_conventions_are_converted_once() {
+        let read = |text: &str, theta_positive, phi_zero| {
+            let convention = Convention {
+                theta_positive,
+                phi_zero,
+            };
+            Measurements::from_reader_with(text.as_bytes(), "test", convention)
+                .unwrap()
+                .readings()[0]
+        };
+        let in_plane = format!("{HEADER}10,20,0.1\n");
+        let mirror_side = read(&in_plane, Side::Forward, Side::Source);
+        assert_eq!(mirror_side.in_plane_theta(), Some(-20_f64.to_radians()));
+        let text = "psi_deg,theta_deg,phi_deg,brdf_per_sr\n10,20,0,0.1\n";
+        let mirror_side = read(text, Side::Source, Side::Forward);
+        assert_eq!(mirror_side.in_plane_theta(), Some(-20_f64.to_radians()));
+    }
+
+    #[test]
+    fn the_refractive_index_of_the_header_is_read() {
+        let text = format!("# refractive_index: 0.63=1.6,0.85=1.58\n{HEADER}10,20,0.1\n");
+        assert_eq!(
+            scan(&text).refractive_index.unwrap().at(Some(0.85)),
+            Some(1.58)
+        );
+    }
+
+    #[test]
+    fn errors_name_line_column_value_and_what_was_expected() {
+        let row = |row: &str| error(format!("# sample: x\n{HEADER}10,20,0.1\n{row}\n"));
+        assert_eq!(
+            row("abc,0,0.1"),
+            "input, line 4, column psi_deg: \"abc\" is not a number: expected degrees from 0 to below 90"
+        );
+        assert_eq!(
+            row("90,0,0.1"),
+            "input, line 4, column psi_deg: \"90\" is out of range: expected degrees from 0 to below 90"
+        );
+        assert!(row("-1,0,0.1").contains("\"-1\" is out of range"));
+        assert!(row("0,-90,0.1").contains("column theta_deg: \"-90\" is out of range"));
+        assert!(row("0,0,NaN").contains("column brdf_per_sr: \"NaN\" is not a finite number"));
+        assert!(row("0,0,-inf").contains("\"-inf\" is not a finite number"));
+        assert!(row("0,0").contains("column brdf_per_sr: \"\" is missing"));
+        assert!(row("0,0,0.1,7").contains("line 4: 4 fields: expected 3"));
+        assert!(row("0;0;0,1").contains("column psi_deg"));
+        assert!(row("0,0,\"0,1\"").contains("\"0,1\" is not a number"));
+    }
+
+    #[test]
+    fn errors_in_optional_columns_are_named() {
+        let with = |column: &str, value: &str| {
+            error(format!(
+                "psi_deg,theta_deg,brdf_per_sr,{column}\n10,20,0.1,{value}\n"
+            ))
+        };
+        assert!(with("wavelength_um", "-0.6").contains("column wavelength_um: \"-0.6\""));
+        assert!(with("sigma_per_sr", "0").contains("column sigma_per_sr: \"0\""));
+        assert!(with("phi_deg", "x").contains("column phi_deg: \"x\""));
+        assert!(with("n", "0.9").contains("column n: \"0.9\" is out of range"));
+        let two = error("n,psi_deg,theta_deg,brdf_per_sr\n1.5,1,2,3\n1.6,1,2,3\n");
+        assert!(
+            two.contains("line 3, column n: \"1.6\" differs from 1.5"),
+            "{two}"
+        );
+    }
+
+    #[test]
+    fn what_is_no_table_is_said_to_be_none() {
+        assert!(error("").contains("is empty"));
+        assert!(error(" \n\n").contains("is empty"));
+        assert!(error("# only: comments\n").contains("no header"));
+        assert!(error(HEADER).contains("line 1: no readings follow the header"));
+        assert!(error("psi_deg,theta_deg\n1,2\n").contains("missing column brdf_per_sr"));
+        assert!(error("a;b\n1;2\n").contains("found \"a\\\", \\\"b\""));
+        assert!(
+            error("psi_deg,psi_deg,theta_deg,brdf_per_sr\n").contains("psi_deg stands there twice")
+        );
+        assert!(error([0x7f, b'E', b'L', b'F', 0, 1]).contains("is binary data"));
+        assert!(error(b"\xff\xfep\0").contains("UTF-16"));
+        assert!(
+            error(format!("# quantity: btdf\n{HEADER}1,2,3\n"))
+                .contains("line 1: quantity \"btdf\"")
+        );
+        assert!(error(format!("# refractive_index: 0.5\n{HEADER}1,2,3\n")).contains("n = 0.5"));
+    }
+
+    #[test]
+    fn an_endless_line_is_refused_before_it_fills_the_memory() {
+        let endless = std::io::repeat(b'7');
+        let message = Measurements::from_reader(endless).unwrap_err().to_string();
+        assert!(
+            message.contains("line 1: the line is longer than 65536 bytes"),
+            "{message}"
+        );
+        let later = format!("{HEADER}1,2,{}\n", "3".repeat(100_000));
+        assert!(error(later).contains("line 2: the line is longer"));
+    }
+
+    #[test]
+    fn a_stray_quote_is_an_error_and_swallows_nothing_silently() {
+        let message = error(format!("{HEADER}1,2,\"3\n4,5,6\n"));
+        assert!(message.contains("line 2, column brdf_per_sr"), "{message}");
+    }
+}

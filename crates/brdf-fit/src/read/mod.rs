@@ -1,0 +1,69 @@
+//! Readers, one file a format.
+
+pub mod csv;
+
+use std::path::PathBuf;
+
+/// Which side of the surface normal, or which azimuth, a file calls positive or zero.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Side {
+    /// The source's side: the model's convention.
+    #[default]
+    Source,
+    /// The side of the mirror direction: as in ASTM E2387 and most goniometers.
+    Forward,
+}
+
+/// The angular convention of a file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Convention {
+    /// The side on which theta counts positive.
+    pub theta_positive: Side,
+    /// The side on which phi is zero.
+    pub phi_zero: Side,
+}
+
+/// Why a file cannot be read as a scan: where, what stands there, and what was expected.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The file cannot be opened or read.
+    #[error("{}: cannot be read: {error}", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        error: std::io::Error,
+    },
+    /// Something in the file as a whole.
+    #[error("{}: {message}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and what was expected.
+        message: String,
+    },
+    /// Something on one line.
+    #[error("{}, line {line}: {message}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// What is wrong, and what was expected.
+        message: String,
+    },
+    /// One value.
+    #[error("{}, line {line}, column {column}: \"{value}\" {message}", path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: u64,
+        /// The name of the column.
+        column: &'static str,
+        /// What stands there.
+        value: String,
+        /// What was expected.
+        message: String,
+    },
+}

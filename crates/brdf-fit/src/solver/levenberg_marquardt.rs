@@ -1,0 +1,223 @@
+//! Levenberg and Marquardt's method within a box.
+//!
+//! Scaling and damping follow Moré ("The Levenberg-Marquardt algorithm: implementation and
+//! theory", 1978) and Nielsen ("Damping parameter in Marquardt's method", 1999). The box is kept
+//! by an active set: where a step would leave it, that parameter goes to its bound and the step of
+//! the others is solved again with it there, so that they answer to the bound. Clamping alone
+//! would leave them where the unbounded step wanted them, which need not lower E at all.
+
+use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
+use nalgebra::{SMatrix, SVector};
+
+use super::Ending;
+use crate::criterion::NormalEquations;
+
+/// A sum of squares with its normal equations.
+pub trait LeastSquares<const P: usize> {
+    /// E, J^T r and J^T J at the parameters.
+    fn normal_equations(&self, param: &SVector<f64, P>) -> NormalEquations<P>;
+}
+
+/// The gradient is taken for zero when the cosine between the residuals and each column of their
+/// Jacobian, but for those that a bound stops, is below this.
+const GRADIENT_TOLERANCE: f64 = 1e-12;
+
+/// The step is taken for zero below this, relative to the parameters and in their scaling.
+const STEP_TOLERANCE: f64 = 1e-15;
+
+/// No further reduction of E: the linear model promises less than this fraction of it.
+const REDUCTION_TOLERANCE: f64 = 1e-16;
+
+/// Damping of the first step, relative to the scaled matrix.
+const FIRST_DAMPING: f64 = 1e-3;
+
+/// A step is taken when E falls by at least this fraction of what the linear model promises.
+const ACCEPTED_GAIN: f64 = 1e-4;
+
+/// The solver: an argmin [`Solver`] for a [`LeastSquares`] problem, one trial step an iteration.
+#[derive(Debug, Clone)]
+pub struct LevenbergMarquardt<const P: usize> {
+    lower: SVector<f64, P>,
+    upper: SVector<f64, P>,
+    damping: f64,
+    damping_growth: f64,
+    /// Squared scale of each parameter: the largest diagonal element of J^T J so far.
+    scale: SVector<f64, P>,
+    ending: Option<Ending>,
+    here: Option<NormalEquations<P>>,
+}
+
+type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
+
+impl<const P: usize> LevenbergMarquardt<P> {
+    /// A solver that keeps each parameter within [lower, upper]; a bound may be infinite.
+    pub fn new(lower: SVector<f64, P>, upper: SVector<f64, P>) -> Self {
+        Self {
+            lower,
+            upper,
+            damping: FIRST_DAMPING,
+            damping_growth: 2.0,
+            scale: SVector::zeros(),
+            ending: None,
+            here: None,
+        }
+    }
+
+    /// Why the solver stopped; `None` while it runs, or when its iterations were used up.
+    pub fn ending(&self) -> Option<Ending> {
+        self.ending
+    }
+
+    /// Takes over the normal equations of a new point.
+    fn arrive(&mut self, equations: NormalEquations<P>) {
+        self.scale = self.scale.sup(&equations.matrix.diagonal());
+        self.here = Some(equations);
+    }
+
+    /// The parameters that may move: not on a bound that the gradient pushes against.
+    fn free(&self, param: &SVector<f64, P>, gradient: &SVector<f64, P>) -> [bool; P] {
+        std::array::from_fn(|j| {
+            let held_below = param[j] <= self.lower[j] && gradient[j] >= 0.0;
+            let held_above = param[j] >= self.upper[j] && gradient[j] <= 0.0;
+            !held_below && !held_above
+        })
+    }
+
+    /// The damped step within the box, or `None` where the damped matrix is singular.
+    fn step(
+        &self,
+        param: &SVector<f64, P>,
+        equations: &NormalEquations<P>,
+    ) -> Option<SVector<f64, P>> {
+        let mut free = self.free(param, &equations.gradient);
+        let mut step = SVector::zeros();
+        // Each round but the last puts one more parameter on its bound.
+        for _ in 0..=P {
+            self.solve(equations, &free, &mut step)?;
+            let outside = |j: &usize| {
+                free[*j] && !(self.lower[*j]..=self.upper[*j]).contains(&(param[*j] + step[*j]))
+            };
+            let Some(j) = (0..P).find(outside) else {
+                break;
+            };
+            let bound = if step[j] < 0.0 {
+                self.lower[j]
+            } else {
+                self.upper[j]
+            };
+            step[j] = bound - param[j];
+            free[j] = false;
+        }
+        Some(step)
+    }
+
+    /// Solves the damped equations for the free parameters, with the steps of the others given.
+    fn solve(
+        &self,
+        equations: &NormalEquations<P>,
+        free: &[bool; P],
+        step: &mut SVector<f64, P>,
+    ) -> Option<()> {
+        let mut matrix = SMatrix::<f64, P, P>::identity();
+        let mut right = *step;
+        for i in (0..P).filter(|&i| free[i]) {
+            right[i] = -equations.gradient[i];
+            for j in 0..P {
+                if free[j] {
+                    matrix[(i, j)] = equations.matrix[(i, j)];
+                } else {
+                    right[i] -= equations.matrix[(i, j)] * step[j];
+                }
+            }
+            // A parameter without any effect so far keeps a unit scale and does not move.
+            let scale = if self.scale[i] > 0.0 {
+                self.scale[i]
+            } else {
+                1.0
+            };
+            matrix[(i, i)] += self.damping * scale;
+        }
+        *step = matrix.cholesky()?.solve(&right);
+        Some(())
+    }
+
+    fn gradient_is_zero(&self, param: &SVector<f64, P>, here: &NormalEquations<P>) -> bool {
+        let free = self.free(param, &here.gradient);
+        (0..P).filter(|&j| free[j]).all(|j| {
+            let columns = (here.matrix[(j, j)] * here.error).sqrt();
+            here.gradient[j].abs() <= GRADIENT_TOLERANCE * columns
+        })
+    }
+
+    fn grow_damping(&mut self) {
+        self.damping *= self.damping_growth;
+        self.damping_growth *= 2.0;
+    }
+}
+
+impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarquardt<P> {
+    fn name(&self) -> &'static str {
+        "Levenberg-Marquardt within a box"
+    }
+
+    fn init(
+        &mut self,
+        problem: &mut Problem<O>,
+        mut state: State<P>,
+    ) -> Result<(State<P>, Option<KV>), Error> {
+        let start = state
+            .take_param()
+            .ok_or_else(|| Error::msg("Levenberg-Marquardt needs a starting point"))?;
+        let param = start.sup(&self.lower).inf(&self.upper);
+        let equations =
+            problem.problem("normal_equations_count", |p| Ok(p.normal_equations(&param)))?;
+        self.arrive(equations);
+        Ok((state.param(param).cost(equations.error), None))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<O>,
+        mut state: State<P>,
+    ) -> Result<(State<P>, Option<KV>), Error> {
+        let (Some(param), Some(here)) = (state.take_param(), self.here) else {
+            return Err(Error::msg("Levenberg-Marquardt was not initialised"));
+        };
+        if self.gradient_is_zero(&param, &here) {
+            self.ending = Some(Ending::GradientZero);
+            return Ok((state.param(param).cost(here.error), None));
+        }
+        let Some(step) = self.step(&param, &here) else {
+            self.grow_damping();
+            return Ok((state.param(param).cost(here.error), None));
+        };
+        let promised = -step.dot(&(2.0 * here.gradient + here.matrix * step));
+        let scaled = |v: &SVector<f64, P>| v.component_mul(v).dot(&self.scale).sqrt();
+        if scaled(&step) <= STEP_TOLERANCE * scaled(&param) {
+            self.ending = Some(Ending::StepTooSmall);
+        } else if promised <= REDUCTION_TOLERANCE * here.error {
+            self.ending = Some(Ending::NoFurtherReduction);
+        }
+        // Rounding of param + step must not leave the box.
+        let trial = (param + step).sup(&self.lower).inf(&self.upper);
+        let there =
+            problem.problem("normal_equations_count", |p| Ok(p.normal_equations(&trial)))?;
+        let gain = (here.error - there.error) / promised;
+        if gain > ACCEPTED_GAIN {
+            self.damping *= (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0);
+            self.damping_growth = 2.0;
+            self.arrive(there);
+            Ok((state.param(trial).cost(there.error), None))
+        } else {
+            self.grow_damping();
+            Ok((state.param(param).cost(here.error), None))
+        }
+    }
+
+    fn terminate(&mut self, _state: &State<P>) -> TerminationStatus {
+        match self.ending {
+            Some(_) => TerminationStatus::Terminated(TerminationReason::SolverConverged),
+            None => TerminationStatus::NotTerminated,
+        }
+    }
+}

@@ -122,7 +122,7 @@ impl Criterion {
     pub fn error(&self, parameters: &Parameters) -> f64 {
         let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
         let k1_squared = k1 * k1;
-        self.sum(|y, a, s, t| {
+        self.sum::<4, 1>(|y, a, s, t| {
             let residual = y - kd * a - k2 * s * (k1_squared / (t + k1_squared));
             [residual * residual]
         })[0]
@@ -144,7 +144,7 @@ impl Criterion {
     pub fn normal_equations(&self, parameters: &Parameters) -> NormalEquations<3> {
         let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
         let k1_squared = k1 * k1;
-        let [rr, ur, ar, vr, uu, ua, uv, av, vv] = self.sum(|y, a, s, t| {
+        let [rr, ur, ar, vr, uu, ua, uv, av, vv] = self.sum::<2, 9>(|y, a, s, t| {
             let reciprocal = 1.0 / (t + k1_squared);
             let u = s * (k1_squared * reciprocal);
             // d(u)/d(k1) = 2 u t / (k1 (t + k1^2)); the factor 2 k2/k1 is put on afterwards.
@@ -182,7 +182,7 @@ impl Criterion {
 
     pub(crate) fn profile_sums(&self, k1: f64) -> ProfileSums {
         let k1_squared = k1 * k1;
-        let [uu, ua, uy] = self.sum(|y, a, s, t| {
+        let [uu, ua, uy] = self.sum::<4, 3>(|y, a, s, t| {
             let u = s * (k1_squared / (t + k1_squared));
             [u * u, u * a, u * y]
         });
@@ -202,10 +202,12 @@ impl Criterion {
 
     /// Sums over all readings of what `term(y, a, s, t)` gives for each.
     ///
-    /// Four running sums side by side: they do not wait for each other, and come out the same on
-    /// every processor.
-    fn sum<const N: usize>(&self, term: impl Fn(f64, f64, f64, f64) -> [f64; N]) -> [f64; N] {
-        const LANES: usize = 4;
+    /// Several running sums side by side, so that they do not wait for each other; they come out
+    /// the same on every processor. `LANES` times `N` numbers should fit into the registers.
+    fn sum<const LANES: usize, const N: usize>(
+        &self,
+        term: impl Fn(f64, f64, f64, f64) -> [f64; N],
+    ) -> [f64; N] {
         let mut sums = [[0.0; LANES]; N];
         let columns = [
             &self.measured,
@@ -215,10 +217,11 @@ impl Criterion {
         ];
         let [y, a, s, t] = columns.map(|column| column.as_chunks::<LANES>());
         for (((y, a), s), t) in y.0.iter().zip(a.0).zip(s.0).zip(t.0) {
-            for lane in 0..LANES {
-                let terms = term(y[lane], a[lane], s[lane], t[lane]);
-                for (sum, term) in sums.iter_mut().zip(terms) {
-                    sum[lane] += term;
+            let terms: [_; LANES] =
+                std::array::from_fn(|lane| term(y[lane], a[lane], s[lane], t[lane]));
+            for (i, sum) in sums.iter_mut().enumerate() {
+                for (sum, terms) in sum.iter_mut().zip(&terms) {
+                    *sum += terms[i];
                 }
             }
         }
@@ -227,7 +230,7 @@ impl Criterion {
                 sum[lane] += term;
             }
         }
-        sums.map(|[a, b, c, d]| (a + b) + (c + d))
+        sums.map(|lanes| lanes.iter().sum())
     }
 
     fn with_capacity(readings: usize) -> Self {
@@ -252,11 +255,12 @@ impl Criterion {
         if largest == 0.0 {
             return Err(CriterionError::AllZero);
         }
-        let norm = largest * self.sum(|y, _, _, _| [(y / largest).powi(2)])[0].sqrt();
+        let norm = largest * self.sum::<4, 1>(|y, _, _, _| [(y / largest).powi(2)])[0].sqrt();
         for column in [&mut self.measured, &mut self.diffuse, &mut self.specular] {
             column.iter_mut().for_each(|value| *value /= norm);
         }
-        [self.diffuse_squared, self.diffuse_measured] = self.sum(|y, a, _, _| [a * a, a * y]);
+        [self.diffuse_squared, self.diffuse_measured] =
+            self.sum::<4, 2>(|y, a, _, _| [a * a, a * y]);
         Ok(self)
     }
 }

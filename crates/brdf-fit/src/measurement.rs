@@ -85,6 +85,18 @@ impl Measurement {
     }
 }
 
+/// Incidence angles within this of each other are one, in radians (0.05 deg).
+const SAME_INCIDENCE: f64 = 0.05 * PI / 180.0;
+
+/// The readings of one incidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Incidence {
+    /// The (smallest) incidence angle psi in radians.
+    pub psi: f64,
+    /// The indices of its readings, in the order of the file.
+    pub readings: Vec<usize>,
+}
+
 /// What a file says of itself in its `# key: value` lines, in their order. Keys are in lower case.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Metadata(pub Vec<(String, String)>);
@@ -169,12 +181,23 @@ impl Measurements {
             .collect()
     }
 
-    /// The incidence angles psi in radians, ascending.
-    pub fn incidences(&self) -> Vec<f64> {
-        let mut angles: Vec<f64> = self.readings.iter().map(|reading| reading.psi).collect();
-        angles.sort_by(f64::total_cmp);
-        angles.dedup();
-        angles
+    /// The incidences in ascending order, each with its readings. Angles that differ by less than
+    /// 0.05 deg, as an instrument sets them, are one incidence.
+    pub fn incidences(&self) -> Vec<Incidence> {
+        let mut order: Vec<usize> = (0..self.readings.len()).collect();
+        order.sort_by(|&a, &b| self.readings[a].psi.total_cmp(&self.readings[b].psi));
+        let mut incidences: Vec<Incidence> = Vec::new();
+        for i in order {
+            let psi = self.readings[i].psi;
+            match incidences.last_mut() {
+                Some(last) if psi - last.psi < SAME_INCIDENCE => last.readings.push(i),
+                _ => incidences.push(Incidence {
+                    psi,
+                    readings: vec![i],
+                }),
+            }
+        }
+        incidences
     }
 
     fn without_readings(&self) -> Self {
@@ -214,7 +237,8 @@ mod tests {
         assert_eq!(scan.wavelengths(), [Some(0.63), Some(0.85)]);
         let split = scan.by_wavelength();
         assert_eq!(split[0].readings().len(), 1);
-        assert_eq!(split[1].incidences(), [0.1, 0.2]);
+        let angles: Vec<f64> = split[1].incidences().iter().map(|i| i.psi).collect();
+        assert_eq!(angles, [0.1, 0.2]);
     }
 
     #[test]

@@ -16,8 +16,8 @@ use crate::solver::K1_RANGE;
 /// a distance of pi/2 in the complex plane, so its profile cannot have features much narrower.
 const STEP: f64 = 0.25;
 
-/// A minimum is refined until ln k1 is known to this; E is then known to its rounding.
-const REFINED: f64 = 1e-8;
+/// A minimum is refined until ln k1 is known to this: E, flat there, is then known to 1e-10 of itself.
+const REFINED: f64 = 1e-5;
 
 /// The profile at one k1: the best weights there, and E with them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -41,7 +41,7 @@ pub fn best_weights(criterion: &Criterion, k1: f64) -> ProfilePoint {
 ///
 /// Either both are positive and the normal equations hold for both, or one is zero and the other
 /// is the best by itself.
-fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
+pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
     let &ProfileSums { uu, ua, uy, aa, ay } = sums;
     let determinant = uu * aa - ua * ua;
     // Collinear to rounding: the two parts cannot be told apart, and one of them does as well.
@@ -80,6 +80,14 @@ impl Profile {
             })
             .collect();
         Self { points }
+    }
+
+    /// The lowest of the points.
+    pub fn lowest_point(&self) -> ProfilePoint {
+        let points = self.points.iter().copied();
+        points
+            .min_by(|a, b| a.error.total_cmp(&b.error))
+            .unwrap_or(self.points[0])
     }
 
     /// The lowest minimum, each local one refined.

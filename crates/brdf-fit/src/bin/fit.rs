@@ -1,1 +1,285 @@
-fn main() {}
+//! The command line: fits goniometer scans and prints, or writes, what came out.
+
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use brdf_fit::output::{WriteError, write_file};
+use brdf_fit::read::{Convention, ReadError, Side};
+use brdf_fit::report::{Document, Report, write_curves, write_parameters};
+use brdf_fit::weights::{AngleWeight, Weights};
+use brdf_fit::{FitError, FitOptions, Measurements, Method, RefractiveIndex};
+use clap::builder::PossibleValuesParser;
+use clap::{Parser, ValueEnum};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+/// Fits the three-parameter BRDF of Li, Yan and Wu (2002) to goniometer scans.
+///
+/// Each wavelength of each file is fitted by itself: initial values, stage 1 over the incidences
+/// up to a limit, stage 2 over all, and a search over k1 that checks the result against the global
+/// optimum. A file is a table with the columns psi_deg, theta_deg and brdf_per_sr, and if need be
+/// wavelength_um, phi_deg, sigma_per_sr and n.
+///
+/// Exit status: 0 when every fit succeeded, 1 when a fit failed (the others are delivered), 2 for
+/// bad usage, unreadable input or output that cannot be written.
+#[derive(Parser)]
+#[command(version, max_term_width = 100)]
+struct Arguments {
+    /// Scans, as text separated by commas, semicolons or tabs
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+
+    /// Refractive index of the coating relative to air, from 1 to 1e5: one for all wavelengths, or
+    /// WAVELENGTH=INDEX pairs in um such as 0.63=1.60,0.85=1.58 (the nearest within 1 % holds)
+    /// [default: what the file says in a column n or a line "# refractive_index: 1.5"]
+    #[arg(long, value_name = "INDEX")]
+    n: Option<RefractiveIndex>,
+
+    /// Method of stage 1
+    #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_and("none"))]
+    stage1: String,
+
+    /// Method of stage 2
+    #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_and(""))]
+    stage2: String,
+
+    /// Largest incidence angle of stage 1, in degrees
+    #[arg(long, value_name = "DEGREES", default_value = "60", value_parser = parse_limit)]
+    stage1_limit: f64,
+
+    /// Largest number of iterations of each stage
+    #[arg(long, value_name = "COUNT", default_value_t = FitOptions::default().max_iterations, value_parser = clap::value_parser!(u64).range(1..))]
+    max_iterations: u64,
+
+    /// Weights of the readings in E, beside g1 and g2: none, or sigma for 1/sigma^2 by the column
+    /// sigma_per_sr
+    #[arg(long, value_enum, value_name = "WEIGHTS", default_value = "none")]
+    weights: ReadingWeights,
+
+    /// Weight g1 over the incidence angle psi, as DEGREES=WEIGHT pairs such as 60=1,80=0.5: linear
+    /// between them, constant beyond [default: 1]
+    #[arg(long, value_name = "PAIRS")]
+    g1: Option<AngleWeight>,
+
+    /// Weight g2 over the view angle theta (source side positive), as DEGREES=WEIGHT pairs
+    /// [default: 1]
+    #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
+    g2: Option<AngleWeight>,
+
+    /// The side of the surface normal on which the files count theta positive
+    #[arg(long, value_enum, value_name = "SIDE", default_value = "source")]
+    theta_positive: FileSide,
+
+    /// The side on which the azimuth phi of the files is zero
+    #[arg(long, value_enum, value_name = "SIDE", default_value = "source")]
+    phi_zero: FileSide,
+
+    /// Write everything about every fit to this file, as JSON with a format version
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+
+    /// Write theory and experiment side by side for each incidence to this file, as CSV
+    #[arg(long, value_name = "FILE")]
+    curves: Option<PathBuf>,
+
+    /// Print the parameters as CSV, one line a fit, instead of the tables
+    #[arg(long)]
+    params_only: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum ReadingWeights {
+    None,
+    Sigma,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum FileSide {
+    Source,
+    Forward,
+}
+
+impl From<FileSide> for Side {
+    fn from(side: FileSide) -> Self {
+        match side {
+            FileSide::Source => Self::Source,
+            FileSide::Forward => Self::Forward,
+        }
+    }
+}
+
+fn methods_and(other: &'static str) -> PossibleValuesParser {
+    let names = ["levenberg-marquardt", "lm", "nelder-mead", "nm", other];
+    PossibleValuesParser::new(names.into_iter().filter(|name| !name.is_empty()))
+}
+
+fn parse_limit(text: &str) -> Result<f64, String> {
+    let limit: f64 = text
+        .parse()
+        .map_err(|_| "expected a number of degrees".to_owned())?;
+    if (0.0..=90.0).contains(&limit) {
+        Ok(limit)
+    } else {
+        Err("expected degrees from 0 to 90".to_owned())
+    }
+}
+
+impl Arguments {
+    fn options(&self) -> FitOptions {
+        let method = |name: &str| name.parse::<Method>().ok();
+        FitOptions {
+            refractive_index: self.n.clone(),
+            weights: Weights {
+                g1: self.g1.clone().unwrap_or_default(),
+                g2: self.g2.clone().unwrap_or_default(),
+                by_sigma: matches!(self.weights, ReadingWeights::Sigma),
+            },
+            stage1: method(&self.stage1),
+            stage1_limit: self.stage1_limit.to_radians(),
+            stage2: method(&self.stage2).unwrap_or(Method::LevenbergMarquardt),
+            max_iterations: self.max_iterations,
+            ..FitOptions::default()
+        }
+    }
+
+    fn convention(&self) -> Convention {
+        Convention {
+            theta_positive: self.theta_positive.into(),
+            phi_zero: self.phi_zero.into(),
+        }
+    }
+}
+
+/// What came of a run, for the exit status.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Outcome {
+    AllFitted,
+    SomeFailed,
+    BadUsageOrFile,
+}
+
+impl From<Outcome> for ExitCode {
+    fn from(outcome: Outcome) -> Self {
+        Self::from(match outcome {
+            Outcome::AllFitted => 0,
+            Outcome::SomeFailed => 1,
+            Outcome::BadUsageOrFile => 2,
+        })
+    }
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let (scans, mut outcome) = read_all(&arguments);
+    let results = fit_all(&scans, &arguments.options());
+    for (report, error) in &results {
+        let Some(error) = error else { continue };
+        let status = if error.is_usage() {
+            Outcome::BadUsageOrFile
+        } else {
+            Outcome::SomeFailed
+        };
+        outcome = outcome.max(status);
+        let wavelength = report
+            .wavelength_um
+            .map_or_else(String::new, |w| format!(", {w} um"));
+        complain(&format!("{}{wavelength}: {error}", report.file));
+    }
+    let reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
+    if let Err(message) = deliver(&arguments, &scans, reports) {
+        complain(&message);
+        outcome = Outcome::BadUsageOrFile;
+    }
+    outcome.into()
+}
+
+/// Reads every file, and complains about those that cannot be read.
+fn read_all(arguments: &Arguments) -> (Vec<Measurements>, Outcome) {
+    let convention = arguments.convention();
+    let files: Vec<Result<Measurements, ReadError>> = arguments
+        .files
+        .par_iter()
+        .map(|file| Measurements::read_csv_with(file, convention))
+        .collect();
+    let mut outcome = Outcome::AllFitted;
+    let mut scans = Vec::new();
+    for file in files {
+        match file {
+            Ok(measurements) => scans.extend(measurements.by_wavelength()),
+            Err(error) => {
+                complain(&error.to_string());
+                outcome = Outcome::BadUsageOrFile;
+            }
+        }
+    }
+    (scans, outcome)
+}
+
+/// Fits all scans side by side, in the order of the files and wavelengths.
+fn fit_all(scans: &[Measurements], options: &FitOptions) -> Vec<(Report, Option<FitError>)> {
+    // Drawn on standard error, and there only if that is a terminal.
+    let bar = ProgressBar::new(scans.len() as u64);
+    if let Ok(style) = ProgressStyle::with_template("fitting {bar:40} {pos}/{len}") {
+        bar.set_style(style);
+    }
+    let results = scans
+        .par_iter()
+        .map(|scan| {
+            let result = Report::of(scan, options);
+            bar.inc(1);
+            result
+        })
+        .collect();
+    bar.finish_and_clear();
+    results
+}
+
+fn deliver(
+    arguments: &Arguments,
+    scans: &[Measurements],
+    reports: Vec<Report>,
+) -> Result<(), String> {
+    print(arguments, &reports).map_err(|error| format!("standard output: {error}"))?;
+    let message = |error: WriteError| error.to_string();
+    if let Some(path) = &arguments.curves {
+        let fits = scans.iter().zip(&reports);
+        let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
+        write_file(path, |writer| write_curves(fits, writer)).map_err(message)?;
+    }
+    if let Some(path) = &arguments.json {
+        let document = Document::new(reports);
+        write_file(path, |writer| {
+            serde_json::to_writer_pretty(&mut *writer, &document)?;
+            writer.write_all(b"\n")
+        })
+        .map_err(message)?;
+    }
+    Ok(())
+}
+
+/// Prints to standard output. A reader that has seen enough (`| head`) is no error.
+fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
+    let mut buffer = Vec::new();
+    if arguments.params_only {
+        write_parameters(reports, &mut buffer)?;
+    } else {
+        let texts: Vec<String> = reports.iter().map(Report::text).collect();
+        buffer.extend(texts.join("\n").bytes());
+    }
+    let mut output = io::stdout().lock();
+    match output.write_all(&buffer).and_then(|()| output.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
+/// An error line on standard error; where that is gone, nobody is there to be told.
+fn complain(message: &str) {
+    let name = if io::stderr().is_terminal() {
+        "\x1b[1;31merror:\x1b[0m"
+    } else {
+        "error:"
+    };
+    let _ = writeln!(io::stderr(), "{name} {message}");
+}

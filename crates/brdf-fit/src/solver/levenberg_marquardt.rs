@@ -20,13 +20,13 @@ pub trait LeastSquares<const P: usize> {
 
 /// The gradient is taken for zero when the cosine between the residuals and each column of their
 /// Jacobian, but for those that a bound stops, is below this.
-const GRADIENT_TOLERANCE: f64 = 1e-12;
+const GRADIENT_TOLERANCE: f64 = 1e-9;
 
 /// The step is taken for zero below this, relative to the parameters and in their scaling.
 const STEP_TOLERANCE: f64 = 1e-15;
 
 /// No further reduction of E: the linear model promises less than this fraction of it.
-const REDUCTION_TOLERANCE: f64 = 1e-16;
+const REDUCTION_TOLERANCE: f64 = 1e-13;
 
 /// Damping of the first step, relative to the scaled matrix.
 const FIRST_DAMPING: f64 = 1e-3;

@@ -126,7 +126,7 @@ fn by_levenberg_marquardt(
         parameters: to_parameters(state.get_best_param().unwrap_or(&to_vector(start))),
         error: state.get_best_cost(),
         iterations: state.get_iter(),
-        evaluations: state.get_func_counts().values().sum(),
+        evaluations: result.problem.counts.values().sum(),
         ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
     })
 }
@@ -152,7 +152,7 @@ fn by_nelder_mead(
         parameters,
         error: criterion.error(&parameters),
         iterations: state.get_iter(),
-        evaluations: state.get_func_counts().values().sum(),
+        evaluations: result.problem.counts.values().sum(),
         ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
     })
 }

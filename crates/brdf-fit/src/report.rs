@@ -1,0 +1,429 @@
+//! What a person or a program reads after the fits: the table, the JSON, the parameters and the
+//! curves as CSV.
+
+use std::fmt::Write as _;
+use std::io;
+
+use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+use serde::{Deserialize, Serialize};
+
+use crate::measurement::{Measurements, Metadata};
+use crate::solver::Ending;
+use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, OwnAndAll, Stage, fit};
+use crate::warning::{Warning, warnings};
+
+/// The result of one wavelength of one file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The file.
+    pub file: String,
+    /// What the file says of itself.
+    pub metadata: Metadata,
+    /// Columns of the file that were not used.
+    pub ignored_columns: Vec<String>,
+    /// Wavelength in micrometres, where the file states one.
+    pub wavelength_um: Option<f64>,
+    /// How many readings there are.
+    pub readings: usize,
+    /// The fit, where there is one.
+    pub fit: Option<Fit>,
+    /// Why there is none.
+    pub error: Option<String>,
+    /// What to know before trusting it.
+    pub warnings: Vec<Warning>,
+}
+
+/// The JSON document of a run.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Document {
+    /// [`FORMAT_VERSION`] of the program that wrote it.
+    pub format_version: u32,
+    /// One report for each file and wavelength.
+    pub reports: Vec<Report>,
+}
+
+impl Document {
+    /// A document of this version.
+    pub fn new(reports: Vec<Report>) -> Self {
+        Self {
+            format_version: FORMAT_VERSION,
+            reports,
+        }
+    }
+}
+
+impl Report {
+    /// Fits one wavelength and reports on it. The error is returned beside the report, which holds
+    /// its words.
+    pub fn of(measurements: &Measurements, options: &FitOptions) -> (Self, Option<FitError>) {
+        let (fit, error) = match fit(measurements, options) {
+            Ok(fit) => (Some(fit), None),
+            Err(error) => (None, Some(error)),
+        };
+        let report = Self {
+            file: measurements.source.clone(),
+            metadata: measurements.metadata.clone(),
+            ignored_columns: measurements.ignored_columns.clone(),
+            wavelength_um: measurements.wavelengths().first().copied().flatten(),
+            readings: measurements.readings().len(),
+            warnings: fit
+                .as_ref()
+                .map_or_else(Vec::new, |fit| warnings(measurements, fit)),
+            fit,
+            error: error.as_ref().map(ToString::to_string),
+        };
+        (report, error)
+    }
+
+    /// The table that a person reads.
+    pub fn text(&self) -> String {
+        let mut text = self.heading();
+        match &self.fit {
+            Some(fit) => {
+                text += &stage_table(fit);
+                text += &incidence_table(fit);
+                text += &global_check_line(fit);
+            }
+            None => {
+                let error = self.error.as_deref().unwrap_or("no fit");
+                let _ = writeln!(text, "  error: {error}");
+            }
+        }
+        for warning in &self.warnings {
+            let _ = writeln!(text, "  warning: {warning}");
+        }
+        if !self.ignored_columns.is_empty() {
+            let _ = writeln!(
+                text,
+                "  columns not used: {}",
+                self.ignored_columns.join(", ")
+            );
+        }
+        text
+    }
+
+    fn heading(&self) -> String {
+        let mut text = self.file.clone();
+        if let Some(sample) = self.metadata.get("sample") {
+            let _ = write!(text, ": {sample}");
+        }
+        text.push('\n');
+        let wavelength = self
+            .wavelength_um
+            .map_or_else(|| "wavelength not stated".to_owned(), |w| format!("{w} um"));
+        let _ = write!(text, "  {wavelength}, ");
+        if let Some(fit) = &self.fit {
+            let _ = write!(text, "n = {}, ", fit.n);
+        }
+        let _ = writeln!(text, "{} readings", self.readings);
+        text
+    }
+
+    /// The line of this fit in the CSV for scripts, in the order of [`PARAMETER_COLUMNS`].
+    fn parameter_record(&self) -> Vec<String> {
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+        let fit = self.fit.as_ref();
+        let stage1 = fit.and_then(|fit| fit.stage1);
+        let parameters = fit.map(|fit| fit.parameters);
+        let of = |parameters: Option<Parameters>| {
+            [
+                parameters.map(|p| p.k2),
+                parameters.map(|p| p.kd),
+                parameters.map(|p| p.k1),
+            ]
+            .map(number)
+        };
+        let mut record = vec![
+            self.file.clone(),
+            number(self.wavelength_um),
+            number(fit.map(|fit| fit.n)),
+        ];
+        record.extend(of(parameters));
+        record.push(number(fit.map(|fit| fit.e_percent)));
+        record.extend(of(stage1.map(|stage| stage.parameters)));
+        record.push(number(stage1.map(|stage| stage.e_percent.own)));
+        record.push(self.status());
+        record
+    }
+
+    /// One word on how the fit ended: `ok`; `global`, where the global check took a lower minimum;
+    /// `iteration-limit`; or `failed: ` and why.
+    pub fn status(&self) -> String {
+        let Some(fit) = &self.fit else {
+            return format!("failed: {}", self.error.as_deref().unwrap_or("no fit"));
+        };
+        let taken = fit
+            .global_check
+            .as_ref()
+            .is_some_and(|check| check.lower_minimum_taken);
+        match fit.stage2.ending {
+            _ if taken => "global",
+            Ending::IterationLimit => "iteration-limit",
+            _ => "ok",
+        }
+        .to_owned()
+    }
+}
+
+/// The header of the CSV for scripts. E is in percent, each over its own stage's readings.
+pub const PARAMETER_COLUMNS: [&str; 12] = [
+    "file",
+    "wavelength_um",
+    "n",
+    "k2",
+    "kd",
+    "k1",
+    "e_percent",
+    "stage1_k2",
+    "stage1_kd",
+    "stage1_k1",
+    "stage1_e_percent",
+    "status",
+];
+
+/// Writes the CSV for scripts: one line a fit.
+pub fn write_parameters(reports: &[Report], writer: impl io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(PARAMETER_COLUMNS)?;
+    for report in reports {
+        csv.write_record(report.parameter_record())?;
+    }
+    csv.flush()
+}
+
+/// The header of the curves.
+pub const CURVE_COLUMNS: [&str; 10] = [
+    "file",
+    "wavelength_um",
+    "psi_deg",
+    "theta_deg",
+    "phi_deg",
+    "measured_per_sr",
+    "sigma_per_sr",
+    "initial_per_sr",
+    "stage1_per_sr",
+    "fit_per_sr",
+];
+
+/// Writes theory and experiment side by side, incidence by incidence: f_r as measured, of the
+/// initial values, of stage 1 and of the fit, at every reading, in the model's convention.
+pub fn write_curves<'a>(
+    fits: impl Iterator<Item = (&'a Measurements, &'a Fit)>,
+    writer: impl io::Write,
+) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(CURVE_COLUMNS)?;
+    for (measurements, fit) in fits {
+        write_curves_of(measurements, fit, &mut csv)?;
+    }
+    csv.flush()
+}
+
+fn write_curves_of(
+    measurements: &Measurements,
+    fit: &Fit,
+    csv: &mut csv::Writer<impl io::Write>,
+) -> io::Result<()> {
+    let model = |parameters| {
+        ThreeParameterBrdf::new(parameters, fit.n)
+            .map_err(|error| io::Error::other(error.to_string()))
+    };
+    let initial = model(fit.initial.parameters)?;
+    let stage1 = fit
+        .stage1
+        .map(|stage| model(stage.parameters))
+        .transpose()?;
+    let last = model(fit.parameters)?;
+    let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+    let degrees = |angle: f64| round_to_nanodegrees(angle.to_degrees()).to_string();
+    for incidence in measurements.incidences() {
+        let mut order = incidence.readings;
+        let readings = measurements.readings();
+        let key = |i: usize| (readings[i].phi, readings[i].theta);
+        order.sort_by(|&a, &b| {
+            key(a)
+                .partial_cmp(&key(b))
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        for reading in order.into_iter().map(|i| &readings[i]) {
+            let geometry = reading
+                .geometry()
+                .map_err(|error| io::Error::other(error.to_string()))?;
+            let theory = |brdf: &ThreeParameterBrdf, at: &Geometry| brdf.value(at).to_string();
+            csv.write_record([
+                measurements.source.clone(),
+                number(fit.wavelength_um),
+                degrees(reading.psi),
+                degrees(reading.theta),
+                degrees(reading.phi),
+                reading.brdf.to_string(),
+                number(reading.sigma),
+                theory(&initial, &geometry),
+                stage1
+                    .as_ref()
+                    .map_or_else(String::new, |brdf| theory(brdf, &geometry)),
+                theory(&last, &geometry),
+            ])?;
+        }
+    }
+    Ok(())
+}
+
+/// Degrees that went through radians come back as they were written.
+fn round_to_nanodegrees(degrees: f64) -> f64 {
+    (degrees * 1e9).round() / 1e9
+}
+
+fn stage_table(fit: &Fit) -> String {
+    let mut text = format!(
+        "\n  {:<10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>10}{:>8}{:>8}{:>11}  ended by\n",
+        "", "k2", "kD", "k1", "E own %", "E all %", "readings", "iter.", "eval.", "time us"
+    );
+    let mut line = |name: &str, p: &Parameters, e: OwnAndAll, rest: &str| {
+        let row = format!(
+            "  {name:<10}{:>12}{:>12}{:>12}{:>12}{:>12}{rest}",
+            digits(p.k2),
+            digits(p.kd),
+            digits(p.k1),
+            digits(e.own),
+            digits(e.all)
+        );
+        let _ = writeln!(text, "{}", row.trim_end());
+    };
+    let work = |stage: &Stage| {
+        format!(
+            "{:>10}{:>8}{:>8}{:>11.1}  {}: {}",
+            stage.readings,
+            stage.iterations,
+            stage.evaluations,
+            1e6 * stage.seconds,
+            stage.method,
+            stage.ending
+        )
+    };
+    line(
+        "initial",
+        &fit.initial.parameters,
+        fit.initial_e_percent,
+        "",
+    );
+    if let Some(stage) = &fit.stage1 {
+        line("stage 1", &stage.parameters, stage.e_percent, &work(stage));
+    }
+    line(
+        "stage 2",
+        &fit.stage2.parameters,
+        fit.stage2.e_percent,
+        &work(&fit.stage2),
+    );
+    if fit.parameters != fit.stage2.parameters {
+        let both = OwnAndAll {
+            own: fit.e_percent,
+            all: fit.e_percent,
+        };
+        line("result", &fit.parameters, both, "");
+    }
+    if let Some(reason) = &fit.stage1_left_out {
+        let _ = writeln!(text, "  stage 1 left out: {reason}");
+    } else if fit.stage1.is_some() {
+        let limit = fit.options.stage1_limit.to_degrees();
+        let _ = writeln!(
+            text,
+            "  stage 1: psi <= {} deg",
+            round_to_nanodegrees(limit)
+        );
+    }
+    let _ = writeln!(text, "  initial values: {}", fit.initial);
+    let on_bound: Vec<&str> = [(fit.parameters.k2, "k2"), (fit.parameters.kd, "kD")]
+        .into_iter()
+        .filter_map(|(value, name)| (value == 0.0).then_some(name))
+        .collect();
+    if !on_bound.is_empty() {
+        let _ = writeln!(text, "  on its bound: {} = 0", on_bound.join(" = "));
+    }
+    text
+}
+
+fn incidence_table(fit: &Fit) -> String {
+    const A_ROW: usize = 10;
+    let mut text = String::new();
+    for chunk in fit.incidences.chunks(A_ROW) {
+        let row = |name: &str, cell: &dyn Fn(usize) -> String| {
+            let cells: String = (0..chunk.len())
+                .map(|i| format!("{:>10}", cell(i)))
+                .collect();
+            format!("  {name:<10}{cells}\n")
+        };
+        text.push('\n');
+        text += &row("psi deg", &|i| {
+            round_to_nanodegrees(chunk[i].psi_deg).to_string()
+        });
+        text += &row("readings", &|i| chunk[i].readings.to_string());
+        text += &row("E %", &|i| {
+            chunk[i].e_percent.map_or_else(|| "-".to_owned(), digits)
+        });
+    }
+    text.push('\n');
+    text
+}
+
+fn global_check_line(fit: &Fit) -> String {
+    match &fit.global_check {
+        None => "  global check: left out\n".to_owned(),
+        Some(check) if check.lower_minimum_taken => format!(
+            "  global check: a lower minimum exists and was taken (E {} % instead of {} %)\n",
+            digits(fit.e_percent),
+            digits(check.stage2_e_percent)
+        ),
+        Some(check) => format!(
+            "  global check: no lower minimum for k1 from {:.0e} to {:.0e} ({} widths)\n",
+            check
+                .profile
+                .first()
+                .map_or(0.0, |point| point.parameters.k1),
+            check
+                .profile
+                .last()
+                .map_or(0.0, |point| point.parameters.k1),
+            check.profile.len()
+        ),
+    }
+}
+
+/// Six significant digits, in whichever notation is short.
+fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&exponent) {
+        return format!("{value:.5e}");
+    }
+    let decimals = (5.0 - exponent).max(0.0) as usize;
+    format!("{value:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_significant_digits() {
+        assert_eq!(digits(0.0), "0");
+        assert_eq!(digits(0.022_859_766), "0.0228598");
+        assert_eq!(digits(301.502_668), "301.503");
+        assert_eq!(digits(-2.839_658), "-2.83966");
+        assert_eq!(digits(123_456_789.0), "1.23457e8");
+        assert_eq!(digits(1.5e-9), "1.50000e-9");
+    }
+
+    #[test]
+    fn angles_come_back_as_they_were_written() {
+        for degrees in [0.1_f64, 41.4, 63.256_3, 89.999] {
+            assert_eq!(
+                round_to_nanodegrees(degrees.to_radians().to_degrees()),
+                degrees
+            );
+        }
+    }
+}

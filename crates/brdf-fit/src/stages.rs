@@ -1,0 +1,413 @@
+//! The two stages of the fit, and the check against the global optimum.
+
+use std::time::Instant;
+
+use brdf_core::Parameters;
+use serde::{Deserialize, Serialize};
+
+use crate::criterion::{Criterion, CriterionError};
+use crate::initial::{InitialValues, initial_values};
+use crate::measurement::{Incidence, Measurements};
+use crate::profile::{Profile, ProfilePoint};
+use crate::refractive_index::RefractiveIndex;
+use crate::solver::{Ending, Method, minimise};
+use crate::weights::Weights;
+
+/// Version of the JSON that [`Fit`] is written as.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The three parameters need at least one reading more.
+pub const FEWEST_READINGS: usize = 4;
+
+/// A minimum counts as lower when E there is lower by more than this fraction: below it, two ways
+/// of summing the same minimum differ.
+const LOWER: f64 = 1e-9;
+
+/// Settings of a fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FitOptions {
+    /// Refractive index; `None` takes what the measurements state.
+    pub refractive_index: Option<RefractiveIndex>,
+    /// Weights of the readings in E.
+    pub weights: Weights,
+    /// Where the first stage starts; `None` takes the paper's initial values.
+    pub start: Option<Parameters>,
+    /// Method of stage 1; `None` leaves the stage out.
+    pub stage1: Option<Method>,
+    /// Largest incidence angle of stage 1, in radians.
+    pub stage1_limit: f64,
+    /// Method of stage 2.
+    pub stage2: Method,
+    /// Largest number of iterations of each stage.
+    pub max_iterations: u64,
+    /// Whether the profile search over k1 checks the result of stage 2.
+    pub global_check: bool,
+}
+
+/// Levenberg-Marquardt in both stages: on the measured samples it reaches the same optimum as
+/// Nelder-Mead in a tenth of the evaluations.
+impl Default for FitOptions {
+    fn default() -> Self {
+        Self {
+            refractive_index: None,
+            weights: Weights::default(),
+            start: None,
+            stage1: Some(Method::LevenbergMarquardt),
+            stage1_limit: 60_f64.to_radians(),
+            stage2: Method::LevenbergMarquardt,
+            max_iterations: 10_000,
+            global_check: true,
+        }
+    }
+}
+
+/// A fit of one wavelength of a scan, with every step on the way.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// [`FORMAT_VERSION`] of the program that wrote it.
+    pub format_version: u32,
+    /// Wavelength in micrometres, where the scan states one.
+    pub wavelength_um: Option<f64>,
+    /// Refractive index of the coating.
+    pub n: f64,
+    /// The settings of the fit.
+    pub options: FitOptions,
+    /// How many readings were fitted.
+    pub readings: usize,
+    /// The fitted parameters: those of stage 2, or of the lower minimum that the check found.
+    pub parameters: Parameters,
+    /// E over all readings, in percent.
+    pub e_percent: f64,
+    /// E of each incidence by itself.
+    pub incidences: Vec<IncidenceError>,
+    /// The initial values.
+    pub initial: InitialValues,
+    /// E of the initial values over the readings of the first stage, and over all, in percent.
+    pub initial_e_percent: OwnAndAll,
+    /// Stage 1; `None` where it was left out.
+    pub stage1: Option<Stage>,
+    /// Why stage 1 was left out although it was asked for.
+    pub stage1_left_out: Option<String>,
+    /// Stage 2.
+    pub stage2: Stage,
+    /// The check against the global optimum; `None` where it was left out.
+    pub global_check: Option<GlobalCheck>,
+    /// Time of the whole fit in seconds.
+    pub seconds: f64,
+}
+
+/// E in percent over the readings of a stage, and over all readings.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OwnAndAll {
+    /// Over the readings of the stage.
+    pub own: f64,
+    /// Over all readings.
+    pub all: f64,
+}
+
+/// What one stage did.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// Its method.
+    pub method: Method,
+    /// Where it ended.
+    pub parameters: Parameters,
+    /// E there.
+    pub e_percent: OwnAndAll,
+    /// How many readings it used.
+    pub readings: usize,
+    /// Its iterations.
+    pub iterations: u64,
+    /// How often it evaluated E, alone or with derivatives.
+    pub evaluations: u64,
+    /// Its time in seconds.
+    pub seconds: f64,
+    /// Why it stopped.
+    pub ending: Ending,
+}
+
+/// E of one incidence by itself: numerator and denominator of eq. (5) over its readings only.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct IncidenceError {
+    /// Incidence angle in degrees.
+    pub psi_deg: f64,
+    /// How many readings there are.
+    pub readings: usize,
+    /// E in percent; `None` where all its readings are zero.
+    pub e_percent: Option<f64>,
+}
+
+/// What the profile search over k1 found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GlobalCheck {
+    /// Whether stage 2 had missed a lower minimum, which then was taken.
+    pub lower_minimum_taken: bool,
+    /// E of stage 2 before, in percent.
+    pub stage2_e_percent: f64,
+    /// The profile: the lowest E at each k1.
+    pub profile: Vec<ProfilePoint>,
+    /// Its time in seconds.
+    pub seconds: f64,
+}
+
+/// Why a scan cannot be fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// More than one wavelength: each has parameters of its own.
+    #[error("{0} wavelengths in one fit: split them with Measurements::by_wavelength")]
+    SeveralWavelengths(usize),
+    /// No refractive index for the wavelength.
+    #[error(
+        "no refractive index{}: give it with --n 1.5 or --n 0.63=1.60,0.85=1.58, by a column n, \
+         or by a line \"# refractive_index: 1.5\" in the file",
+        at_wavelength(.0)
+    )]
+    NoRefractiveIndex(Option<f64>),
+    /// Fewer readings than [`FEWEST_READINGS`].
+    #[error("{0} readings: three parameters need at least {FEWEST_READINGS}")]
+    TooFewReadings(usize),
+    /// All readings have one value.
+    #[error(
+        "all {count} readings are {value} 1/sr: such data are kD = pi times that, and say nothing \
+         of k2 and k1 (a saturated detector, a constant column?)"
+    )]
+    AllEqual {
+        /// How many there are.
+        count: usize,
+        /// Their value.
+        value: f64,
+    },
+    /// E is not defined.
+    #[error(transparent)]
+    Criterion(#[from] CriterionError),
+    /// A minimiser failed.
+    #[error("the minimiser failed: {0}")]
+    Solver(String),
+}
+
+impl FitError {
+    /// Whether the user can mend it by other arguments, the readings being what they are.
+    pub fn is_usage(&self) -> bool {
+        matches!(
+            self,
+            Self::NoRefractiveIndex(_) | Self::Criterion(CriterionError::NoSigma)
+        )
+    }
+}
+
+fn at_wavelength(wavelength_um: &Option<f64>) -> String {
+    wavelength_um.map_or_else(String::new, |w| format!(" at {w} um"))
+}
+
+/// Fits the three parameters to a scan of one wavelength: initial values, stage 1 over the
+/// incidences up to the limit, stage 2 over all, and the check against the global optimum.
+///
+/// The result is the same in every run, but for the times.
+pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, FitError> {
+    let started = Instant::now();
+    let readings = measurements.readings();
+    let wavelength_um = single_wavelength(measurements)?;
+    check_readings(measurements)?;
+    let n = options
+        .refractive_index
+        .as_ref()
+        .or(measurements.refractive_index.as_ref())
+        .and_then(|index| index.at(wavelength_um))
+        .ok_or(FitError::NoRefractiveIndex(wavelength_um))?;
+
+    let all = Criterion::new(readings, n, &options.weights)?;
+    let incidences = measurements.incidences();
+    let first = FirstStage::choose(&all, &incidences, options);
+    let own = first.criterion.as_ref().unwrap_or(&all);
+    let initial = match options.start {
+        Some(parameters) => InitialValues {
+            parameters,
+            weights: None,
+            width: None,
+        },
+        None => initial_values(readings, first.incidences, n, own),
+    };
+
+    let stage1 = match (options.stage1, &first.left_out) {
+        (Some(method), None) => Some(run(method, own, &all, initial.parameters, options)?),
+        _ => None,
+    };
+    let start = stage1.map_or(initial.parameters, |stage| stage.parameters);
+    let stage2 = run(options.stage2, &all, &all, start, options)?;
+    let mut parameters = stage2.parameters;
+    let mut global_check = None;
+    if options.global_check {
+        let check = check_globally(&all, stage2, options)?;
+        parameters = check.0;
+        global_check = Some(check.1);
+    }
+
+    Ok(Fit {
+        format_version: FORMAT_VERSION,
+        wavelength_um,
+        n,
+        options: options.clone(),
+        readings: readings.len(),
+        parameters,
+        e_percent: 100.0 * all.error(&parameters),
+        incidences: errors_by_incidence(&all, &incidences, &parameters),
+        initial_e_percent: own_and_all(own, &all, &initial.parameters),
+        initial,
+        stage1,
+        stage1_left_out: first.left_out,
+        stage2,
+        global_check,
+        seconds: started.elapsed().as_secs_f64(),
+    })
+}
+
+fn single_wavelength(measurements: &Measurements) -> Result<Option<f64>, FitError> {
+    match measurements.wavelengths().as_slice() {
+        [] => Ok(None),
+        [wavelength] => Ok(*wavelength),
+        several => Err(FitError::SeveralWavelengths(several.len())),
+    }
+}
+
+fn check_readings(measurements: &Measurements) -> Result<(), FitError> {
+    let readings = measurements.readings();
+    if readings.len() < FEWEST_READINGS {
+        return Err(FitError::TooFewReadings(readings.len()));
+    }
+    let value = readings[0].brdf;
+    if value != 0.0 && readings.iter().all(|reading| reading.brdf == value) {
+        return Err(FitError::AllEqual {
+            count: readings.len(),
+            value,
+        });
+    }
+    Ok(())
+}
+
+/// The readings of stage 1, or why there are none.
+struct FirstStage<'a> {
+    incidences: &'a [Incidence],
+    /// `None` where they are all readings.
+    criterion: Option<Criterion>,
+    left_out: Option<String>,
+}
+
+impl<'a> FirstStage<'a> {
+    fn choose(all: &Criterion, incidences: &'a [Incidence], options: &FitOptions) -> Self {
+        // A rounding of the angle shall not exclude the limit itself.
+        let limit = options.stage1_limit + 1e-9;
+        let count = incidences.partition_point(|incidence| incidence.psi <= limit);
+        let chosen = &incidences[..count];
+        let mut inside = vec![false; all.len()];
+        chosen
+            .iter()
+            .flat_map(|i| &i.readings)
+            .for_each(|&i| inside[i] = true);
+        let readings = inside.iter().filter(|&&is_inside| is_inside).count();
+        let everything = |left_out| Self {
+            incidences,
+            criterion: None,
+            left_out,
+        };
+        if options.stage1.is_none() || readings == all.len() {
+            return everything(None);
+        }
+        if readings < FEWEST_READINGS {
+            let limit_deg = options.stage1_limit.to_degrees();
+            return everything(Some(format!(
+                "{readings} readings up to {limit_deg:.6} deg"
+            )));
+        }
+        match all.subset(|i| inside[i]) {
+            Ok(criterion) => Self {
+                incidences: chosen,
+                criterion: Some(criterion),
+                left_out: None,
+            },
+            Err(error) => everything(Some(error.to_string())),
+        }
+    }
+}
+
+fn run(
+    method: Method,
+    own: &Criterion,
+    all: &Criterion,
+    start: Parameters,
+    options: &FitOptions,
+) -> Result<Stage, FitError> {
+    let started = Instant::now();
+    let minimum = minimise(own, method, start, options.max_iterations)
+        .map_err(|error| FitError::Solver(error.to_string()))?;
+    Ok(Stage {
+        method,
+        parameters: minimum.parameters,
+        e_percent: own_and_all(own, all, &minimum.parameters),
+        readings: own.len(),
+        iterations: minimum.iterations,
+        evaluations: minimum.evaluations,
+        seconds: started.elapsed().as_secs_f64(),
+        ending: minimum.ending,
+    })
+}
+
+fn own_and_all(own: &Criterion, all: &Criterion, parameters: &Parameters) -> OwnAndAll {
+    OwnAndAll {
+        own: 100.0 * own.error(parameters),
+        all: 100.0 * all.error(parameters),
+    }
+}
+
+/// Looks for a minimum below that of stage 2, and polishes it where there is one.
+fn check_globally(
+    all: &Criterion,
+    stage2: Stage,
+    options: &FitOptions,
+) -> Result<(Parameters, GlobalCheck), FitError> {
+    let started = Instant::now();
+    let profile = Profile::search(all);
+    let lowest = profile.global_minimum(all).parameters;
+    let mut parameters = stage2.parameters;
+    let is_lower = |candidate: &Parameters, best: &Parameters| {
+        all.error(candidate) < all.error(best) * (1.0 - LOWER)
+    };
+    let lower_minimum_taken = is_lower(&lowest, &parameters);
+    if lower_minimum_taken {
+        let polished = run(Method::LevenbergMarquardt, all, all, lowest, options)?.parameters;
+        parameters = if all.error(&polished) <= all.error(&lowest) {
+            polished
+        } else {
+            lowest
+        };
+    }
+    let check = GlobalCheck {
+        lower_minimum_taken,
+        stage2_e_percent: stage2.e_percent.all,
+        profile: profile.points,
+        seconds: started.elapsed().as_secs_f64(),
+    };
+    Ok((parameters, check))
+}
+
+fn errors_by_incidence(
+    all: &Criterion,
+    incidences: &[Incidence],
+    parameters: &Parameters,
+) -> Vec<IncidenceError> {
+    let residuals: Vec<(f64, f64)> = all.residuals(parameters).collect();
+    incidences
+        .iter()
+        .map(|incidence| {
+            let (mut above, mut below) = (0.0, 0.0);
+            for &i in &incidence.readings {
+                above += residuals[i].0 * residuals[i].0;
+                below += residuals[i].1 * residuals[i].1;
+            }
+            IncidenceError {
+                psi_deg: incidence.psi.to_degrees(),
+                readings: incidence.readings.len(),
+                e_percent: (below > 0.0).then(|| 100.0 * above / below),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,311 @@
+//! What a user should know before trusting a fit.
+
+use std::fmt;
+
+use brdf_core::{Parameters, ThreeParameterBrdf};
+use serde::{Deserialize, Serialize};
+
+use crate::criterion::{Criterion, NormalEquations};
+use crate::measurement::{Measurement, Measurements};
+use crate::profile::ProfilePoint;
+use crate::solver::{Ending, K1_RANGE};
+use crate::stages::Fit;
+
+/// Above this E the model does not describe a sample: the readings are missed by a third of their
+/// size (root of 10 %). The paper's own fits have 1.7 ... 6.5 %.
+const NOT_DESCRIBED_PERCENT: f64 = 10.0;
+
+/// Fewer incidences say little of the dependence on the incidence angle.
+const FEW_INCIDENCES: usize = 3;
+
+/// A reading is near the mirror direction when its facet is tilted by no more than this, in
+/// radians: 2.5 deg, or 5 deg of view angle in the plane of incidence.
+const NEAR_MIRROR_TILT: f64 = 2.5 * std::f64::consts::PI / 180.0;
+
+/// Quantile of chi-square for one parameter at 95 %.
+const CHI_SQUARE_95: f64 = 3.841;
+
+/// The other side as positive describes the readings better when it lowers E by this factor.
+const TURNED_GAIN: f64 = 0.5;
+
+/// Something about the data or the fit that its user should know.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Warning {
+    /// E is too large for the model to describe the sample.
+    NotDescribed {
+        /// E in percent.
+        e_percent: f64,
+    },
+    /// The readings fit better with the other side counted positive.
+    TurnedRound {
+        /// E in percent with theta negated.
+        e_percent: f64,
+    },
+    /// The hemispherical reflectance exceeds 1.
+    ReflectanceAboveOne {
+        /// The incidence angle from which it does, in degrees.
+        psi_deg: f64,
+    },
+    /// The data do not determine k1.
+    WidthNotDetermined {
+        /// The range of k1 in which E stays within its 95 % interval.
+        from: f64,
+        /// Its upper end.
+        to: f64,
+        /// Why.
+        reason: String,
+    },
+    /// The data do not determine a weight.
+    WeightNotDetermined {
+        /// k2 or kD.
+        weight: String,
+        /// Why.
+        reason: String,
+    },
+    /// Few incidence angles.
+    FewIncidences {
+        /// How many.
+        count: usize,
+    },
+    /// Negative readings, which are noise; they are kept.
+    NegativeReadings {
+        /// How many.
+        count: usize,
+    },
+    /// Readings at the same angles as another one; they are all kept.
+    RepeatedReadings {
+        /// How many there are beyond the first of each.
+        count: usize,
+    },
+    /// Nothing was measured near the mirror direction.
+    NoMirrorReadings {
+        /// The smallest tilt of a facet among the readings, in degrees.
+        smallest_tilt_deg: f64,
+    },
+    /// A stage used up its iterations.
+    IterationLimit {
+        /// 1 or 2.
+        stage: u8,
+    },
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotDescribed { e_percent } => write!(
+                f,
+                "the model does not describe this sample: E = {e_percent:.3} % at its optimum, so \
+                 that it misses the readings by {:.0} % of their size (root mean square)",
+                10.0 * e_percent.sqrt()
+            ),
+            Self::TurnedRound { e_percent } => write!(
+                f,
+                "with theta counted the other way round E would be {e_percent:.3} %: does the file \
+                 count the forward side positive (--theta-positive forward, or --phi-zero forward)?"
+            ),
+            Self::ReflectanceAboveOne { psi_deg } => write!(
+                f,
+                "the hemispherical reflectance is above 1 from psi = {psi_deg:.1} deg on, which no \
+                 real surface has"
+            ),
+            Self::WidthNotDetermined { from, to, reason } => write!(
+                f,
+                "the data do not determine k1: {reason} (E stays within its 95 % interval for k1 \
+                 from {from:.2e} to {to:.2e})"
+            ),
+            Self::WeightNotDetermined { weight, reason } => {
+                write!(f, "the data do not determine {weight}: {reason}")
+            }
+            Self::FewIncidences { count } => write!(
+                f,
+                "{count} incidence angle{}: little is known of other incidences",
+                if *count == 1 { "" } else { "s" }
+            ),
+            Self::NegativeReadings { count } => {
+                write!(f, "{count} negative readings (noise); they are kept")
+            }
+            Self::RepeatedReadings { count } => {
+                write!(
+                    f,
+                    "{count} readings repeat the angles of another one; all are kept"
+                )
+            }
+            Self::NoMirrorReadings { smallest_tilt_deg } => write!(
+                f,
+                "nothing was measured near the mirror direction: no facet is tilted by less than \
+                 {smallest_tilt_deg:.1} deg, so k2 and k1 rest on the flanks of the peak"
+            ),
+            Self::IterationLimit { stage } => {
+                write!(
+                    f,
+                    "stage {stage} used up its iterations before it converged"
+                )
+            }
+        }
+    }
+}
+
+/// All warnings about a fit of the measurements, the gravest first.
+pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
+    let readings = measurements.readings();
+    let mut warnings = Vec::new();
+    if fit.e_percent > NOT_DESCRIBED_PERCENT {
+        warnings.push(Warning::NotDescribed {
+            e_percent: fit.e_percent,
+        });
+    }
+    if let Ok(criterion) = Criterion::new(readings, fit.n, &fit.options.weights) {
+        warnings.extend(turned_round(readings, fit));
+        warnings.extend(not_determined(&criterion, fit));
+    }
+    warnings.extend(reflectance_above_one(fit));
+    warnings.extend(iteration_limits(fit));
+    warnings.extend(about_readings(readings, fit.incidences.len()));
+    warnings
+}
+
+fn turned_round(readings: &[Measurement], fit: &Fit) -> Option<Warning> {
+    let turned: Vec<Measurement> = readings
+        .iter()
+        .map(|r| Measurement {
+            theta: -r.theta,
+            ..*r
+        })
+        .collect();
+    let criterion = Criterion::new(&turned, fit.n, &fit.options.weights).ok()?;
+    let lowest = crate::profile::Profile::search(&criterion).global_minimum(&criterion);
+    let e_percent = 100.0 * lowest.error;
+    (e_percent < TURNED_GAIN * fit.e_percent).then_some(Warning::TurnedRound { e_percent })
+}
+
+fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
+    let brdf = ThreeParameterBrdf::new(fit.parameters, fit.n).ok()?;
+    let psi_deg = brdf.energy_violation_angle()?.to_degrees();
+    Some(Warning::ReflectanceAboveOne { psi_deg })
+}
+
+fn iteration_limits(fit: &Fit) -> impl Iterator<Item = Warning> {
+    let stages = [fit.stage1, Some(fit.stage2)];
+    (1..).zip(stages).filter_map(|(stage, result)| {
+        (result?.ending == Ending::IterationLimit).then_some(Warning::IterationLimit { stage })
+    })
+}
+
+fn about_readings(readings: &[Measurement], incidences: usize) -> impl Iterator<Item = Warning> {
+    let negative = readings.iter().filter(|r| r.brdf < 0.0).count();
+    let repeated = repeated_readings(readings);
+    let smallest_tilt = readings
+        .iter()
+        .filter_map(|r| r.geometry().ok())
+        .map(|geometry| geometry.tan2_alpha().sqrt().atan())
+        .fold(f64::INFINITY, f64::min);
+    [
+        (incidences < FEW_INCIDENCES).then_some(Warning::FewIncidences { count: incidences }),
+        (smallest_tilt > NEAR_MIRROR_TILT).then(|| Warning::NoMirrorReadings {
+            smallest_tilt_deg: smallest_tilt.to_degrees(),
+        }),
+        (negative > 0).then_some(Warning::NegativeReadings { count: negative }),
+        (repeated > 0).then_some(Warning::RepeatedReadings { count: repeated }),
+    ]
+    .into_iter()
+    .flatten()
+}
+
+fn repeated_readings(readings: &[Measurement]) -> usize {
+    // Adding zero makes one of the two zeros of a signed angle.
+    let mut angles: Vec<[f64; 3]> = readings
+        .iter()
+        .map(|r| [r.psi + 0.0, r.theta + 0.0, r.phi + 0.0])
+        .collect();
+    let total = angles.len();
+    angles.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    angles.dedup();
+    total - angles.len()
+}
+
+/// Which parameters the data leave open, in the linear approximation for the weights and along
+/// the profile for the width.
+fn not_determined(criterion: &Criterion, fit: &Fit) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let parameters = fit.parameters;
+    if parameters.k2 == 0.0 {
+        warnings.push(Warning::WidthNotDetermined {
+            from: K1_RANGE.0,
+            to: K1_RANGE.1,
+            reason: "k2 is 0, and an absent lobe has no width".to_owned(),
+        });
+        return warnings;
+    }
+    let profile = fit
+        .global_check
+        .as_ref()
+        .map(|check| check.profile.as_slice());
+    warnings.extend(profile.and_then(|profile| width_not_determined(profile, fit)));
+    let equations = criterion.normal_equations(&parameters);
+    warnings.extend(weights_not_determined(&equations, criterion, fit));
+    warnings
+}
+
+/// The interval of k1 in which E stays below its minimum times 1 + chi^2/(N - 3): where it reaches
+/// the end of the search, k1 has no limit on that side.
+fn width_not_determined(profile: &[ProfilePoint], fit: &Fit) -> Option<Warning> {
+    let degrees_of_freedom = (fit.readings - 3) as f64;
+    let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / degrees_of_freedom);
+    let k1 = fit.parameters.k1;
+    let inside = |point: &&ProfilePoint| point.error <= limit;
+    let below = profile
+        .iter()
+        .rev()
+        .filter(|point| point.parameters.k1 <= k1);
+    let above = profile.iter().filter(|point| point.parameters.k1 >= k1);
+    let from = below
+        .take_while(inside)
+        .last()
+        .map_or(k1, |point| point.parameters.k1);
+    let to = above
+        .take_while(inside)
+        .last()
+        .map_or(k1, |point| point.parameters.k1);
+    let reason = match (from <= K1_RANGE.0, to >= K1_RANGE.1) {
+        (false, false) => return None,
+        (true, false) => "any narrower peak fits as well: it is narrower than the scan resolves",
+        (false, true) => "any wider distribution fits as well: there is no peak",
+        (true, true) => "any width fits as well",
+    };
+    Some(Warning::WidthNotDetermined {
+        from,
+        to,
+        reason: reason.to_owned(),
+    })
+}
+
+/// Weights whose standard error is larger than what they could be.
+fn weights_not_determined(
+    equations: &NormalEquations<3>,
+    criterion: &Criterion,
+    fit: &Fit,
+) -> Vec<Warning> {
+    let Parameters { k2, kd, .. } = fit.parameters;
+    let degrees_of_freedom = (fit.readings - 3) as f64;
+    let Some(inverse) = equations.matrix.try_inverse() else {
+        return vec![Warning::WeightNotDetermined {
+            weight: "k2 and kD".to_owned(),
+            reason: "the readings do not tell the specular from the diffuse part".to_owned(),
+        }];
+    };
+    let standard_error = |i: usize| (equations.error / degrees_of_freedom * inverse[(i, i)]).sqrt();
+    let level = criterion.lambertian_weight();
+    // kD may well be near 0; what matters then is how much of the whole it might be.
+    [("k2", 0, k2, k2), ("kD", 1, kd, kd.max(0.5 * level))]
+        .into_iter()
+        .filter(|&(_, i, _, largest)| !(standard_error(i) <= largest))
+        .map(|(name, i, value, _)| Warning::WeightNotDetermined {
+            weight: name.to_owned(),
+            reason: format!(
+                "{value:.3e} has a standard error of {:.1e}",
+                standard_error(i)
+            ),
+        })
+        .collect()
+}

@@ -264,3 +264,139 @@ impl Criterion {
         Ok(self)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::ThreeParameterBrdf;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::synthetic::scan;
+
+    const N: f64 = 1.5;
+
+    /// A scan whose readings are not those of the model.
+    fn distorted_scan() -> Vec<Measurement> {
+        let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
+        let mut readings = scan(truth, N).readings().to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.3 * (i as f64).sin();
+            reading.sigma = Some(0.1 + 0.01 * (i % 7) as f64);
+        }
+        readings
+    }
+
+    fn criterion(weights: &Weights) -> Criterion {
+        Criterion::new(&distorted_scan(), N, weights).unwrap()
+    }
+
+    #[test]
+    fn equals_eq_5_written_out() {
+        let parameters = Parameters::new(0.2, 0.15, 0.3).unwrap();
+        let brdf = ThreeParameterBrdf::new(parameters, N).unwrap();
+        let weights = Weights {
+            g1: "0=1,60=1,70=0.5".parse().unwrap(),
+            by_sigma: true,
+            ..Weights::default()
+        };
+        let (mut above, mut below) = (0.0, 0.0);
+        for reading in distorted_scan() {
+            let g = if reading.psi.to_degrees() > 65.0 {
+                0.5
+            } else {
+                1.0
+            } / reading.sigma.unwrap().powi(2);
+            let difference = reading.brdf - brdf.value(&reading.geometry().unwrap());
+            above += g * (difference * reading.theta.cos()).powi(2);
+            below += g * (reading.brdf * reading.theta.cos()).powi(2);
+        }
+        let error = criterion(&weights).error(&parameters);
+        assert!((error / (above / below) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn residuals_and_subsets_add_up() {
+        let parameters = Parameters::new(0.2, 0.15, 0.3).unwrap();
+        let criterion = criterion(&Weights::default());
+        let sum: f64 = criterion.residuals(&parameters).map(|(r, _)| r * r).sum();
+        assert!((sum / criterion.error(&parameters) - 1.0).abs() < 1e-12);
+        let some = criterion.subset(|i| i % 3 == 0).unwrap();
+        let (mut above, mut below) = (0.0, 0.0);
+        for (r, y) in criterion.residuals(&parameters).step_by(3) {
+            above += r * r;
+            below += y * y;
+        }
+        assert!((some.error(&parameters) / (above / below) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn readings_without_any_weight_are_an_error() {
+        let mut readings = distorted_scan();
+        let g1 = "0=0".parse().unwrap();
+        let weightless = Criterion::new(
+            &readings,
+            N,
+            &Weights {
+                g1,
+                ..Weights::default()
+            },
+        );
+        assert_eq!(weightless.unwrap_err(), CriterionError::AllZero);
+        readings[3].sigma = None;
+        let by_sigma = Weights {
+            by_sigma: true,
+            ..Weights::default()
+        };
+        assert_eq!(
+            Criterion::new(&readings, N, &by_sigma).unwrap_err(),
+            CriterionError::NoSigma
+        );
+    }
+
+    #[test]
+    fn the_size_of_the_readings_does_not_matter() {
+        let expected = criterion(&Weights::default());
+        for size in [1e-200, 1e200] {
+            let mut readings = distorted_scan();
+            readings.iter_mut().for_each(|r| r.brdf *= size);
+            let scaled = Criterion::new(&readings, N, &Weights::default()).unwrap();
+            for (a, b) in scaled.measured.iter().zip(&expected.measured) {
+                assert!((a - b).abs() < 1e-14);
+            }
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn derivatives_agree_with_finite_differences(
+            k2 in 0.01..2.0, kd in 0.01..1.0, log_k1 in -4.0..1.5_f64,
+        ) {
+            let criterion = criterion(&Weights::default());
+            let at = [k2, kd, log_k1.exp()];
+            let parameters = |[k2, kd, k1]: [f64; 3]| Parameters { k2, kd, k1 };
+            let equations = criterion.normal_equations(&parameters(at));
+            prop_assert!((equations.error / criterion.error(&parameters(at)) - 1.0).abs() < 1e-12);
+
+            // Columns of the Jacobian by differences, and with them J^T r and J^T J.
+            let residuals = |at| criterion.residuals(&parameters(at)).map(|(r, _)| r).collect::<Vec<_>>();
+            let columns: Vec<Vec<f64>> = (0..3).map(|j| {
+                let step = 1e-6 * at[j];
+                let moved = |sign: f64| { let mut moved = at; moved[j] += sign * step; residuals(moved) };
+                moved(1.0).iter().zip(moved(-1.0)).map(|(up, down)| (up - down) / (2.0 * step)).collect()
+            }).collect();
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let length = |j: usize| dot(&columns[j], &columns[j]).sqrt();
+            let r = residuals(at);
+            for i in 0..3 {
+                let gradient = dot(&columns[i], &r);
+                let scale = length(i) * dot(&r, &r).sqrt();
+                prop_assert!((equations.gradient[i] - gradient).abs() < 1e-7 * scale);
+                for j in 0..3 {
+                    let product = dot(&columns[i], &columns[j]);
+                    let error = (equations.matrix[(i, j)] - product).abs();
+                    prop_assert!(error < 1e-7 * length(i) * length(j));
+                }
+            }
+        }
+    }
+}

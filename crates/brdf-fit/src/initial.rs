@@ -93,14 +93,20 @@ impl Section {
         }
     }
 
+    /// f_r exactly in the mirror direction.
+    fn exact_mirror_reading(&self) -> Option<f64> {
+        let found = self.points.iter().find(|(theta, _)| *theta == -self.psi);
+        found.map(|(_, f)| *f)
+    }
+
     /// f_r in the mirror direction: read there, or between two readings that are near enough.
     fn mirror_reading(&self) -> Option<f64> {
+        if let Some(exact) = self.exact_mirror_reading() {
+            return Some(exact);
+        }
         let mirror = -self.psi;
         let after = self.points.partition_point(|(theta, _)| *theta < mirror);
         let right = *self.points.get(after)?;
-        if right.0 == mirror {
-            return Some(right.1);
-        }
         let left = *self.points.get(after.checked_sub(1)?)?;
         (right.0 - left.0 <= LARGEST_GAP).then(|| interpolate(left, right, mirror))
     }
@@ -170,10 +176,11 @@ fn weights_of_mirror_readings(
         .iter()
         .filter_map(|s| Some((factor(s.psi), std::f64::consts::PI * s.mirror_reading()?)))
         .collect();
+    // Everything hangs on this one reading: between two others that flank a peak it would be low.
     let normal = sections
         .iter()
         .find(|s| s.psi == 0.0)
-        .and_then(Section::mirror_reading);
+        .and_then(Section::exact_mirror_reading);
     let (k2, kd, route) = match normal {
         Some(normal) if mirror.len() > 1 => {
             let sum = std::f64::consts::PI * normal;
@@ -254,4 +261,72 @@ fn width_from_level(
     let facet = (std::f64::consts::PI * level - kd) / (k2 * mirror);
     let k1_squared = facet * geometry.tan2_alpha() / (geometry.sec_alpha() - facet);
     (k1_squared > 0.0).then(|| k1_squared.sqrt().clamp(K1_RANGE.0, K1_RANGE.1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::Measurements;
+    use crate::synthetic::scan;
+    use crate::weights::Weights;
+
+    fn initial(readings: Vec<Measurement>) -> InitialValues {
+        let scan = Measurements::new("test", readings).unwrap();
+        let criterion = Criterion::new(scan.readings(), 1.5, &Weights::default()).unwrap();
+        initial_values(scan.readings(), &scan.incidences(), 1.5, &criterion)
+    }
+
+    fn truth() -> Parameters {
+        Parameters::new(0.3, 0.1, 0.2).unwrap()
+    }
+
+    #[test]
+    fn steps_1_and_2_recover_the_weights_of_a_scan_with_a_normal_reading() {
+        let mut readings = scan(truth(), 1.5).readings().to_vec();
+        let mut normal = readings[0];
+        (normal.psi, normal.theta, normal.brdf) = (0.0, 0.0, 0.4 / std::f64::consts::PI);
+        readings.push(normal);
+        let found = initial(readings);
+        assert_eq!(found.weights, Some(WeightsRoute::NormalReading));
+        assert!((found.parameters.k2 - 0.3).abs() < 1e-12);
+        assert!((found.parameters.kd - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn without_a_normal_reading_the_mirror_readings_give_the_weights() {
+        let readings = scan(truth(), 1.5).readings().to_vec();
+        let found = initial(readings.into_iter().filter(|r| r.psi > 0.0).collect());
+        assert_eq!(found.weights, Some(WeightsRoute::MirrorReadings));
+        assert!((found.parameters.k2 - 0.3).abs() < 1e-12);
+        assert!((found.parameters.kd - 0.1).abs() < 1e-12);
+        assert_eq!(found.width, Some(WidthRoute::HalfHeight));
+        // The half height is interpolated between readings 5 deg apart.
+        assert!((found.parameters.k1 / 0.2 - 1.0).abs() < 0.2, "{found:?}");
+    }
+
+    #[test]
+    fn without_mirror_readings_the_whole_scan_serves() {
+        let readings = scan(truth(), 1.5).readings().to_vec();
+        let found = initial(readings.into_iter().filter(|r| r.theta > 0.0).collect());
+        assert_eq!(found.weights, Some(WeightsRoute::WholeScan));
+        assert!((found.parameters.k1 / 0.2).ln().abs() <= 0.25);
+    }
+
+    #[test]
+    fn without_a_peak_the_width_is_searched() {
+        let flat = Parameters::new(0.05, 0.5, 0.8).unwrap();
+        let found = initial(scan(flat, 1.5).readings().to_vec());
+        assert_eq!(found.weights, Some(WeightsRoute::MirrorReadings));
+        assert_eq!(found.width, Some(WidthRoute::WholeScan));
+    }
+
+    #[test]
+    fn the_width_solves_eq_4() {
+        let brdf = brdf_core::ThreeParameterBrdf::new(truth(), 1.5).unwrap();
+        let level = brdf.value(&Geometry::in_plane(0.5, -0.9).unwrap());
+        let fresnel = Dielectric::new(1.5);
+        let k1 = width_from_level(0.5, -0.9, level, &fresnel, 0.3, 0.1).unwrap();
+        assert!((k1 - 0.2).abs() < 1e-12);
+        assert_eq!(width_from_level(0.5, -0.9, 0.01, &fresnel, 0.3, 0.1), None);
+    }
 }

@@ -9,6 +9,7 @@ pub mod refractive_index;
 pub mod report;
 pub mod solver;
 pub mod stages;
+pub mod synthetic;
 pub mod warning;
 pub mod weights;
 

@@ -141,3 +141,66 @@ impl CostFunction for InLogK1<'_> {
         Ok(best_weights(self.0, log_k1.exp()).error)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::synthetic::scan;
+    use crate::weights::Weights;
+
+    fn criterion(k2: f64, kd: f64, k1: f64) -> Criterion {
+        let mut readings = scan(Parameters::new(k2, kd, k1).unwrap(), 1.5)
+            .readings()
+            .to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.1 * (i as f64).sin();
+        }
+        Criterion::new(&readings, 1.5, &Weights::default()).unwrap()
+    }
+
+    #[test]
+    fn the_global_minimum_is_that_of_a_dense_scan() {
+        let criterion = criterion(0.3, 0.1, 0.2);
+        let found = Profile::search(&criterion).global_minimum(&criterion);
+        let dense = (0..20_000)
+            .map(|i| best_weights(&criterion, 1e-3 * 1.0005_f64.powi(i)).error)
+            .fold(f64::INFINITY, f64::min);
+        assert!(found.error <= dense && found.error > dense * (1.0 - 1e-6));
+    }
+
+    #[test]
+    fn a_profile_without_a_minimum_ends_at_the_end_of_its_range() {
+        // A peak between the readings: the narrower, the better.
+        let mut readings = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5)
+            .readings()
+            .to_vec();
+        for reading in &mut readings {
+            reading.brdf = if reading.theta == -reading.psi {
+                1e3
+            } else {
+                0.1
+            };
+        }
+        let criterion = Criterion::new(&readings, 1.5, &Weights::default()).unwrap();
+        let found = Profile::search(&criterion).global_minimum(&criterion);
+        assert_eq!(found.parameters.k1, K1_RANGE.0);
+    }
+
+    proptest! {
+        #[test]
+        fn the_best_weights_are_the_best(
+            k2 in 0.0..1.0, kd in 0.0..1.0, log_k1 in -3.0..0.5_f64, at in -5.0..2.0_f64,
+            by_k2 in -0.5..0.5_f64, by_kd in -0.5..0.5_f64,
+        ) {
+            let criterion = criterion(k2 + 1e-3, kd, log_k1.exp());
+            let best = best_weights(&criterion, at.exp());
+            let Parameters { k2, kd, k1 } = best.parameters;
+            prop_assert!(k2 >= 0.0 && kd >= 0.0);
+            prop_assert!((criterion.error(&best.parameters) - best.error).abs() < 1e-13);
+            let other = Parameters { k2: (k2 + by_k2).max(0.0), kd: (kd + by_kd).max(0.0), k1 };
+            prop_assert!(criterion.error(&other) >= best.error - 1e-13);
+        }
+    }
+}

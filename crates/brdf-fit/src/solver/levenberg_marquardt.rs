@@ -221,3 +221,110 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use argmin::core::Executor;
+    use nalgebra::{Matrix2, Vector2};
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// A linear problem: residuals L^T (x - centre), so that J^T J is the matrix L L^T.
+    struct Quadratic {
+        matrix: Matrix2<f64>,
+        centre: Vector2<f64>,
+    }
+
+    impl LeastSquares<2> for Quadratic {
+        fn normal_equations(&self, x: &Vector2<f64>) -> NormalEquations<2> {
+            let away = x - self.centre;
+            NormalEquations {
+                error: 1.0 + away.dot(&(self.matrix * away)),
+                gradient: self.matrix * away,
+                matrix: self.matrix,
+            }
+        }
+    }
+
+    fn minimum(problem: Quadratic, start: Vector2<f64>) -> (Vector2<f64>, Option<Ending>) {
+        let solver = LevenbergMarquardt::new(Vector2::zeros(), Vector2::new(4.0, f64::INFINITY));
+        let result = Executor::new(problem, solver)
+            .configure(|state| state.param(start).max_iters(200))
+            .run()
+            .unwrap();
+        let best = argmin::core::State::get_best_param(&result.state)
+            .copied()
+            .unwrap();
+        (best, result.solver.ending())
+    }
+
+    #[test]
+    fn the_other_parameters_answer_to_a_bound() {
+        // Strongly correlated: with x at its bound 0, y is best at 2 - 0.9 = 1.1, not at 2.
+        let matrix = Matrix2::new(1.0, 0.9, 0.9, 1.0);
+        let problem = Quadratic {
+            matrix,
+            centre: Vector2::new(-1.0, 2.0),
+        };
+        let (found, ending) = minimum(problem, Vector2::new(3.0, 3.0));
+        assert_eq!(found[0], 0.0);
+        assert!((found[1] - 1.1).abs() < 1e-7);
+        assert_eq!(ending, Some(Ending::GradientZero));
+    }
+
+    #[test]
+    fn a_bound_at_the_start_can_be_left() {
+        let problem = Quadratic {
+            matrix: Matrix2::identity(),
+            centre: Vector2::new(1.0, 2.0),
+        };
+        let (found, _) = minimum(problem, Vector2::zeros());
+        assert!((found - Vector2::new(1.0, 2.0)).norm() < 1e-7);
+    }
+
+    #[test]
+    fn a_start_outside_the_box_is_brought_into_it() {
+        let problem = Quadratic {
+            matrix: Matrix2::identity(),
+            centre: Vector2::new(9.0, 2.0),
+        };
+        let (found, _) = minimum(problem, Vector2::new(-5.0, 9.0));
+        assert_eq!(found[0], 4.0);
+    }
+
+    #[test]
+    fn a_parameter_without_effect_stays() {
+        let matrix = Matrix2::new(1.0, 0.0, 0.0, 0.0);
+        let problem = Quadratic {
+            matrix,
+            centre: Vector2::new(1.0, 7.0),
+        };
+        let (found, ending) = minimum(problem, Vector2::new(3.0, 3.0));
+        assert!((found[0] - 1.0).abs() < 1e-7);
+        assert_eq!(found[1], 3.0);
+        assert!(ending.is_some());
+    }
+
+    proptest! {
+        #[test]
+        fn ends_where_no_step_within_the_box_goes_down(
+            a in 0.1..10.0, b in 0.1..10.0, correlation in -0.99..0.99,
+            x in -5.0..8.0, y in -5.0..5.0, from_x in 0.0..4.0, from_y in 0.0..9.0,
+        ) {
+            let c = correlation * f64::sqrt(a * b);
+            let problem = Quadratic { matrix: Matrix2::new(a, c, c, b), centre: Vector2::new(x, y) };
+            let (found, _) = minimum(problem, Vector2::new(from_x, from_y));
+            prop_assert!((0.0..=4.0).contains(&found[0]) && found[1] >= 0.0);
+            let problem = Quadratic { matrix: Matrix2::new(a, c, c, b), centre: Vector2::new(x, y) };
+            let here = problem.normal_equations(&found);
+            let cosine = |j: usize| here.gradient[j] / (here.matrix[(j, j)] * here.error).sqrt();
+            for j in 0..2 {
+                let at_lower = found[j] == 0.0;
+                let at_upper = j == 0 && found[j] == 4.0;
+                prop_assert!(at_lower || cosine(j) < 1e-6, "{} {}", j, cosine(j));
+                prop_assert!(at_upper || cosine(j) > -1e-6, "{} {}", j, cosine(j));
+            }
+        }
+    }
+}

@@ -197,3 +197,62 @@ impl LeastSquares<3> for &Criterion {
         Criterion::normal_equations(self, &to_parameters(param))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::scan;
+    use crate::weights::Weights;
+
+    const METHODS: [Method; 2] = [Method::NelderMead, Method::LevenbergMarquardt];
+
+    fn criterion(truth: Parameters) -> Criterion {
+        Criterion::new(scan(truth, 1.5).readings(), 1.5, &Weights::default()).unwrap()
+    }
+
+    #[test]
+    fn both_methods_find_the_parameters_of_a_noise_free_scan() {
+        let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
+        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
+        for method in METHODS {
+            let found = minimise(&criterion(truth), method, start, 10_000).unwrap();
+            assert!(
+                (found.parameters.k2 / truth.k2 - 1.0).abs() < 1e-6,
+                "{method}: {found:?}"
+            );
+            assert!((found.parameters.kd / truth.kd - 1.0).abs() < 1e-6);
+            assert!((found.parameters.k1 / truth.k1 - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn both_methods_end_exactly_on_a_bound() {
+        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
+        for method in METHODS {
+            let specular = criterion(Parameters::new(0.3, 0.0, 0.2).unwrap());
+            assert_eq!(
+                minimise(&specular, method, start, 10_000)
+                    .unwrap()
+                    .parameters
+                    .kd,
+                0.0
+            );
+            let diffuse = criterion(Parameters::new(0.0, 0.3, 0.2).unwrap());
+            let found = minimise(&diffuse, method, start, 10_000).unwrap();
+            assert!(found.parameters.k2 < 1e-9, "{method}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn the_iteration_limit_is_told() {
+        let criterion = criterion(Parameters::new(0.3, 0.1, 0.2).unwrap());
+        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
+        for method in METHODS {
+            let found = minimise(&criterion, method, start, 2).unwrap();
+            assert_eq!(
+                (found.iterations, found.ending),
+                (2, Ending::IterationLimit)
+            );
+        }
+    }
+}

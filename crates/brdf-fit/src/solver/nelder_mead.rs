@@ -167,3 +167,53 @@ impl<'a> Solver<Unbounded<'a>, State> for NelderMead {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::synthetic::scan;
+    use crate::weights::Weights;
+
+    fn with_criterion<T>(test: impl FnOnce(Unbounded<'_>) -> T) -> T {
+        let scan = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
+        let criterion = Criterion::new(scan.readings(), 1.5, &Weights::default()).unwrap();
+        test(Unbounded::new(&criterion, (1e-6, 1e3)))
+    }
+
+    #[test]
+    fn no_coordinates_leave_the_bounds_with_a_finite_error() {
+        with_criterion(|problem| {
+            for x in [-30.0, -13.9, 6.95, 800.0, f64::NAN] {
+                assert_eq!(
+                    problem.cost(&Vector3::new(0.5, 0.5, x)).unwrap(),
+                    f64::INFINITY
+                );
+            }
+            for k1 in [1e-6, 1e3, 1e9] {
+                let edge = problem.to_coordinates(Parameters {
+                    k2: 0.1,
+                    kd: 0.1,
+                    k1,
+                });
+                assert!(problem.cost(&edge).unwrap().is_finite());
+                assert!(problem.to_parameters(&edge).k1 <= 1e3);
+            }
+        });
+    }
+
+    proptest! {
+        #[test]
+        fn coordinates_go_there_and_back(k2 in 0.0..10.0, kd in 0.0..10.0, log_k1 in -13.8..6.9_f64) {
+            with_criterion(|problem| {
+                let there = Parameters { k2, kd, k1: log_k1.exp() };
+                let back = problem.to_parameters(&problem.to_coordinates(there));
+                prop_assert!((back.k2 - k2).abs() < 1e-14);
+                prop_assert!((back.kd - kd).abs() < 1e-14);
+                prop_assert!((back.k1 / there.k1 - 1.0).abs() < 1e-14);
+                Ok(())
+            })?;
+        }
+    }
+}

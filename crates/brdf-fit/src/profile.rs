@@ -71,13 +71,15 @@ pub struct Profile {
 impl Profile {
     /// Evaluates the profile over [`K1_RANGE`].
     pub fn search(criterion: &Criterion) -> Self {
-        let (from, to) = (K1_RANGE.0.ln(), K1_RANGE.1.ln());
-        let steps = ((to - from) / STEP).ceil();
-        let points = (0..=steps as u32)
-            .map(|i| {
-                let log_k1 = from + (to - from) * f64::from(i) / steps;
-                best_weights(criterion, log_k1.exp().clamp(K1_RANGE.0, K1_RANGE.1))
-            })
+        let span = (K1_RANGE.1 / K1_RANGE.0).ln();
+        let steps = (span / STEP).ceil() as u32;
+        let k1 = |step| match step {
+            0 => K1_RANGE.0,
+            _ if step == steps => K1_RANGE.1,
+            _ => K1_RANGE.0 * (span * f64::from(step) / f64::from(steps)).exp(),
+        };
+        let points = (0..=steps)
+            .map(|step| best_weights(criterion, k1(step)))
             .collect();
         Self { points }
     }

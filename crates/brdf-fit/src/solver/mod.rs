@@ -159,14 +159,15 @@ fn by_nelder_mead(
 
 /// Puts a weight exactly on its bound where E does not become larger by that.
 ///
-/// A simplex comes as near to a bound as E can tell, and no nearer.
+/// A simplex comes as near to a bound as E can tell, and no nearer: to 1e-13 of E, or where E is
+/// nothing but rounding to 1e-10 of the readings.
 fn onto_bounds(criterion: &Criterion, best: Parameters) -> Parameters {
     [
         Parameters { kd: 0.0, ..best },
         Parameters { k2: 0.0, ..best },
     ]
     .into_iter()
-    .filter(|bound| criterion.error(bound) <= criterion.error(&best) * (1.0 + 1e-13))
+    .filter(|bound| criterion.error(bound) <= criterion.error(&best) * (1.0 + 1e-13) + 1e-20)
     .min_by(|a, b| criterion.error(a).total_cmp(&criterion.error(b)))
     .unwrap_or(best)
 }

@@ -1,1 +1,123 @@
-//! x
+//! What the end-to-end tests share: where things are, the built programs, noise, and the
+//! independently computed optima.
+
+pub mod data;
+pub mod picture;
+pub mod textbook;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use brdf_core::Parameters;
+use brdf_fit::Measurements;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+
+/// A path below the workspace's root.
+pub fn in_workspace(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+}
+
+/// The folder of measured samples beside the workspace. Where it is absent, says so: the caller
+/// has nothing to test then.
+pub fn shared_data() -> Option<PathBuf> {
+    let folder = in_workspace("../shared/data");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: no ../shared/data beside the project");
+    None
+}
+
+/// Runs the program `fit`, built once for all tests of a process.
+pub fn run_fit<S: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
+    fit_command()
+        .args(arguments)
+        .output()
+        .expect("the program starts")
+}
+
+/// The program `fit`, to be started.
+pub fn fit_command() -> Command {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    let program = PROGRAM.get_or_init(|| {
+        let build = escargot::CargoBuild::new()
+            .manifest_path(in_workspace("Cargo.toml"))
+            .package("brdf-fit")
+            .bin("fit")
+            .current_release()
+            .current_target()
+            .run();
+        build.expect("the program builds").path().to_owned()
+    });
+    Command::new(program)
+}
+
+/// A generator of random numbers that gives the same ones in every run.
+pub fn generator(seed: u64) -> StdRng {
+    StdRng::seed_from_u64(seed)
+}
+
+/// A number from the normal distribution of mean 0 and standard deviation 1.
+pub fn normal(generator: &mut StdRng) -> f64 {
+    generator.sample(StandardNormal)
+}
+
+/// A number between two others, uniform in its logarithm.
+pub fn log_uniform(generator: &mut StdRng, from: f64, to: f64) -> f64 {
+    generator.random_range(from.ln()..to.ln()).exp()
+}
+
+/// One line of the independently computed optima.
+#[derive(Debug, Clone)]
+pub struct ExpectedOptimum {
+    /// The file below the shared data.
+    pub file: String,
+    /// The wavelength in micrometres.
+    pub wavelength_um: f64,
+    /// The refractive index.
+    pub n: f64,
+    /// E over all readings in percent, and the parameters there.
+    pub all: (f64, Parameters),
+    /// E over the readings up to 60 deg in percent, and the parameters there.
+    pub up_to_60: (f64, Parameters),
+}
+
+/// The optima that an independent program found for the shared samples.
+pub fn expected_optima(shared_data: &Path) -> Vec<ExpectedOptimum> {
+    let path = shared_data.join("expected_optima.csv");
+    let mut reader = csv::Reader::from_path(path).expect("the optima are there");
+    let rows = reader.records().map(|record| {
+        let record = record.expect("a row of the optima");
+        let number = |i: usize| record[i].parse::<f64>().expect("a number of the optima");
+        let optimum = |i: usize| {
+            (
+                number(i),
+                Parameters {
+                    k2: number(i + 1),
+                    kd: number(i + 2),
+                    k1: number(i + 3),
+                },
+            )
+        };
+        ExpectedOptimum {
+            file: record[0].to_owned(),
+            wavelength_um: number(1),
+            n: number(2),
+            all: optimum(4),
+            up_to_60: optimum(9),
+        }
+    });
+    rows.collect()
+}
+
+/// The readings of one wavelength of a file.
+pub fn one_wavelength(path: &Path, wavelength_um: f64) -> Measurements {
+    let scan = Measurements::read_csv(path).expect("a readable sample");
+    let mut wavelengths = scan.by_wavelength().into_iter();
+    wavelengths
+        .find(|scan| scan.wavelengths() == [Some(wavelength_um)])
+        .expect("the wavelength is in the file")
+}

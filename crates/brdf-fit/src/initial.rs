@@ -315,7 +315,9 @@ mod tests {
     #[test]
     fn without_a_peak_the_width_is_searched() {
         let flat = Parameters::new(0.05, 0.5, 0.8).unwrap();
-        let found = initial(scan(flat, 1.5).readings().to_vec());
+        // At larger incidences the Fresnel factor makes a peak even of these parameters.
+        let readings = scan(flat, 1.5).readings().to_vec();
+        let found = initial(readings.into_iter().filter(|r| r.psi < 0.7).collect());
         assert_eq!(found.weights, Some(WeightsRoute::MirrorReadings));
         assert_eq!(found.width, Some(WidthRoute::WholeScan));
     }

@@ -2,8 +2,8 @@
 //!
 //! Scaling and damping follow Moré ("The Levenberg-Marquardt algorithm: implementation and
 //! theory", 1978) and Nielsen ("Damping parameter in Marquardt's method", 1999). The box is kept
-//! by an active set: where a step would leave it, that parameter goes to its bound and the step of
-//! the others is solved again with it there, so that they answer to the bound. Clamping alone
+//! by an active set: where a step would leave it, that parameter is held at its bound and the step
+//! of the others is solved again with it there, so that they answer to the bound. Clamping alone
 //! would leave them where the unbounded step wanted them, which need not lower E at all.
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
@@ -83,62 +83,76 @@ impl<const P: usize> LevenbergMarquardt<P> {
         })
     }
 
-    /// The damped step within the box, or `None` where the damped matrix is singular.
+    /// The step within the box that minimises the damped quadratic model, or `None` where its
+    /// matrix is singular.
+    ///
+    /// A primal active-set method: from a feasible step go towards the minimum over the free
+    /// parameters, hold the first one that meets its bound, and release a held one when the model
+    /// falls towards the inside. So every step promises a lower E.
     fn step(
         &self,
         param: &SVector<f64, P>,
         equations: &NormalEquations<P>,
     ) -> Option<SVector<f64, P>> {
+        let matrix = self.damped(&equations.matrix);
+        let (lower, upper) = (self.lower - param, self.upper - param);
         let mut free = self.free(param, &equations.gradient);
         let mut step = SVector::zeros();
-        // Each round but the last puts one more parameter on its bound.
-        for _ in 0..=P {
-            self.solve(equations, &free, &mut step)?;
-            let outside = |j: &usize| {
-                free[*j] && !(self.lower[*j]..=self.upper[*j]).contains(&(param[*j] + step[*j]))
+        // Each working set lowers the model, so that none comes twice: there are 3^P at the most.
+        for _ in 0..3_usize.pow(P as u32) {
+            let target = solve(&matrix, &equations.gradient, &free, &step)?;
+            let way = target - step;
+            let fraction = |j: usize| {
+                let room = if way[j] < 0.0 {
+                    lower[j] - step[j]
+                } else {
+                    upper[j] - step[j]
+                };
+                if free[j] && way[j] != 0.0 {
+                    room / way[j]
+                } else {
+                    f64::INFINITY
+                }
             };
-            let Some(j) = (0..P).find(outside) else {
+            let first = (0..P).min_by(|&i, &j| fraction(i).total_cmp(&fraction(j)))?;
+            if fraction(first) < 1.0 {
+                step += way * fraction(first);
+                step[first] = if way[first] < 0.0 {
+                    lower[first]
+                } else {
+                    upper[first]
+                };
+                free[first] = false;
+                continue;
+            }
+            step = target;
+            let slope = equations.gradient + matrix * step;
+            let falls_inside = |j: &usize| {
+                let at_lower = step[*j] <= lower[*j] && slope[*j] < 0.0;
+                let at_upper = step[*j] >= upper[*j] && slope[*j] > 0.0;
+                !free[*j] && (at_lower || at_upper)
+            };
+            let Some(released) = (0..P).find(falls_inside) else {
                 break;
             };
-            let bound = if step[j] < 0.0 {
-                self.lower[j]
-            } else {
-                self.upper[j]
-            };
-            step[j] = bound - param[j];
-            free[j] = false;
+            free[released] = true;
         }
         Some(step)
     }
 
-    /// Solves the damped equations for the free parameters, with the steps of the others given.
-    fn solve(
-        &self,
-        equations: &NormalEquations<P>,
-        free: &[bool; P],
-        step: &mut SVector<f64, P>,
-    ) -> Option<()> {
-        let mut matrix = SMatrix::<f64, P, P>::identity();
-        let mut right = *step;
-        for i in (0..P).filter(|&i| free[i]) {
-            right[i] = -equations.gradient[i];
-            for j in 0..P {
-                if free[j] {
-                    matrix[(i, j)] = equations.matrix[(i, j)];
-                } else {
-                    right[i] -= equations.matrix[(i, j)] * step[j];
-                }
-            }
+    /// J^T J with the damping on its diagonal.
+    fn damped(&self, matrix: &SMatrix<f64, P, P>) -> SMatrix<f64, P, P> {
+        let mut damped = *matrix;
+        for i in 0..P {
             // A parameter without any effect so far keeps a unit scale and does not move.
             let scale = if self.scale[i] > 0.0 {
                 self.scale[i]
             } else {
                 1.0
             };
-            matrix[(i, i)] += self.damping * scale;
+            damped[(i, i)] += self.damping * scale;
         }
-        *step = matrix.cholesky()?.solve(&right);
-        Some(())
+        damped
     }
 
     fn gradient_is_zero(&self, param: &SVector<f64, P>, here: &NormalEquations<P>) -> bool {
@@ -222,6 +236,28 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
     }
 }
 
+/// The minimum of the model over the free parameters, the others staying at their steps.
+fn solve<const P: usize>(
+    matrix: &SMatrix<f64, P, P>,
+    gradient: &SVector<f64, P>,
+    free: &[bool; P],
+    step: &SVector<f64, P>,
+) -> Option<SVector<f64, P>> {
+    let mut reduced = SMatrix::<f64, P, P>::identity();
+    let mut right = *step;
+    for i in (0..P).filter(|&i| free[i]) {
+        right[i] = -gradient[i];
+        for j in 0..P {
+            if free[j] {
+                reduced[(i, j)] = matrix[(i, j)];
+            } else {
+                right[i] -= matrix[(i, j)] * step[j];
+            }
+        }
+    }
+    Some(reduced.cholesky()?.solve(&right))
+}
+
 #[cfg(test)]
 mod tests {
     use argmin::core::Executor;
@@ -271,6 +307,19 @@ mod tests {
         assert_eq!(found[0], 0.0);
         assert!((found[1] - 1.1).abs() < 1e-7);
         assert_eq!(ending, Some(Ending::GradientZero));
+    }
+
+    /// With the first violated bound simply held, the step went to (4, 0), where E is larger.
+    #[test]
+    fn of_two_bounds_in_the_way_only_the_right_one_is_held() {
+        let matrix = Matrix2::new(0.1, 0.074, 0.074, 0.1);
+        let problem = Quadratic {
+            matrix,
+            centre: Vector2::new(4.54, -3.74),
+        };
+        let (found, _) = minimum(problem, Vector2::new(0.0, 0.2));
+        assert_eq!(found[1], 0.0);
+        assert!((found[0] - (4.54 - 0.74 * 3.74)).abs() < 1e-7);
     }
 
     #[test]

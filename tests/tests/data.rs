@@ -1,0 +1,47 @@
+//! The committed data are those that their command makes.
+
+use std::fs;
+
+use brdf_fit::Measurements;
+use brdf_tests::{data, in_workspace, picture};
+
+#[test]
+fn generated_files_are_current() {
+    let mut files = data::files();
+    files.push(("docs/z307.svg".to_owned(), picture::svg().unwrap()));
+    for (path, text) in files {
+        let committed = fs::read_to_string(in_workspace(&path)).unwrap_or_default();
+        let command = "cargo run --release -p brdf-tests --bin make-data";
+        assert!(committed == text, "{path} is not current: run {command}");
+    }
+}
+
+#[test]
+fn every_scan_in_the_data_can_be_read_and_says_where_it_comes_from() {
+    for folder in ["data/measured", "data/synthetic"] {
+        let mut count = 0;
+        for entry in fs::read_dir(in_workspace(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|extension| extension != "csv") {
+                continue;
+            }
+            let scan = Measurements::read_csv(&path).unwrap();
+            assert!(scan.readings().len() >= 100 && scan.ignored_columns.is_empty());
+            assert!(scan.metadata.get("source").is_some(), "{}", path.display());
+            count += 1;
+        }
+        assert!(count >= 4, "{folder}");
+    }
+}
+
+#[test]
+fn copies_of_measured_samples_are_those_of_the_shared_folder() {
+    let Some(shared) = brdf_tests::shared_data() else {
+        return;
+    };
+    for entry in fs::read_dir(shared.join("blacklab")).unwrap() {
+        let original = entry.unwrap().path();
+        let copy = in_workspace("data/measured").join(original.file_name().unwrap());
+        assert_eq!(fs::read(original).unwrap(), fs::read(copy).unwrap());
+    }
+}

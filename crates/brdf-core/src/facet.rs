@@ -37,12 +37,14 @@ impl Ellipsoid {
     }
 
     /// f(alpha)/f(0), dimensionless: 1 at alpha = 0.
+    #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         self.k1_squared * geometry.sec_alpha / (geometry.tan2_alpha + self.k1_squared)
     }
 
     /// The derivative of f(alpha)/f(0) by k1:
     /// 2 k1 sec alpha tan^2 alpha / (tan^2 alpha + k1^2)^2.
+    #[inline]
     pub fn derivative_k1(&self, geometry: &Geometry) -> f64 {
         let denominator = geometry.tan2_alpha + self.k1_squared;
         2.0 * self.k1 * geometry.sec_alpha * (geometry.tan2_alpha / denominator) / denominator

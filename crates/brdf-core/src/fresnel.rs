@@ -50,6 +50,7 @@ impl Dielectric {
     }
 
     /// R0(gamma) = R(gamma)/R(0), for cos gamma in (0, 1].
+    #[inline]
     pub fn relative(&self, cos_gamma: f64) -> f64 {
         let sum = self.g(cos_gamma) + cos_gamma;
         let ratio2 = self.n_plus_1_squared / self.square(cos_gamma, sum);
@@ -75,19 +76,22 @@ impl Dielectric {
         ratio4 * (2.0 * ratio_log_slope * (1.0 + b * b) + b * b_slope)
     }
 
+    #[inline]
     fn g(&self, cos_gamma: f64) -> f64 {
         (self.n2_minus_1 + cos_gamma * cos_gamma).sqrt()
     }
 
     /// (g + c)^2, given `sum` = g + c.
+    #[inline]
     fn square(&self, cos_gamma: f64, sum: f64) -> f64 {
         self.n2_minus_1 + 2.0 * cos_gamma * sum
     }
 
-    /// b of the formula above, the ratio of the two polarisations' amplitudes; `sum` = g + c, and
-    /// g - c = (n^2-1)/(g + c).
+    /// b of the formula above, the ratio of the two polarisations' amplitudes, given `sum` = g + c:
+    /// b = (g + c)(c (g + c) - 1) / (c (n^2 - 1) + g + c).
+    #[inline]
     fn polarisation_term(&self, cos_gamma: f64, sum: f64) -> f64 {
-        (cos_gamma * sum - 1.0) / (cos_gamma * (self.n2_minus_1 / sum) + 1.0)
+        sum * (cos_gamma * sum - 1.0) / (cos_gamma * self.n2_minus_1 + sum)
     }
 }
 

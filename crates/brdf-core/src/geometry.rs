@@ -4,6 +4,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 
+use crate::trigonometry::{sin_cos_quarter, sin_eighth, sin2_cos2_of_half};
+
 /// How far the length of a direction vector may be from 1.
 ///
 /// Wide enough for vectors that were rounded to `f32`; such vectors are brought to length 1.
@@ -64,6 +66,7 @@ impl Geometry {
     /// Domain: psi in [0, pi/2), theta in (-pi/2, pi/2), any finite phi. The `f64` nearest to
     /// pi/2 is below pi/2 and belongs to the domain. A negative theta is the direction (|theta|,
     /// phi + pi), so that `new(psi, theta, 0.0)` takes the signed in-plane angle of the paper.
+    #[inline]
     pub fn new(psi: f64, theta: f64, phi: f64) -> Result<Self, GeometryError> {
         if !(0.0..=FRAC_PI_2).contains(&psi) {
             return Err(GeometryError::Incidence(psi));
@@ -74,16 +77,19 @@ impl Geometry {
         if !phi.is_finite() {
             return Err(GeometryError::Azimuth(phi));
         }
-        let (sin_half_phi, cos_half_phi) = (0.5 * phi).sin_cos();
-        Ok(if theta < 0.0 {
-            Self::from_half_azimuth(psi, -theta, cos_half_phi, sin_half_phi)
+        let (sin2_half_phi, cos2_half_phi) = sin2_cos2_of_half(phi);
+        // (theta < 0, phi) is (|theta|, phi + pi), and that exchanges the two squares.
+        let (sin2, cos2) = if theta < 0.0 {
+            (cos2_half_phi, sin2_half_phi)
         } else {
-            Self::from_half_azimuth(psi, theta, sin_half_phi, cos_half_phi)
-        })
+            (sin2_half_phi, cos2_half_phi)
+        };
+        Ok(Self::from_half_azimuth(psi, theta.abs(), sin2, cos2))
     }
 
     /// The geometry in the plane of incidence, with the paper's signed view angle, in radians:
     /// theta = -psi is the specular direction, theta = psi looks back into the source.
+    #[inline]
     pub fn in_plane(psi: f64, signed_theta: f64) -> Result<Self, GeometryError> {
         Self::new(psi, signed_theta, 0.0)
     }
@@ -107,23 +113,26 @@ impl Geometry {
         ))
     }
 
-    /// Both zenith angles not negative, the azimuth as the sine and cosine of its half.
-    fn from_half_azimuth(psi: f64, theta: f64, sin_half_phi: f64, cos_half_phi: f64) -> Self {
-        let (sin_psi, cos_psi) = psi.sin_cos();
-        let (sin_theta, cos_theta) = theta.sin_cos();
-        let tan_difference = (0.5 * (psi - theta)).tan();
-        let tan2_difference = tan_difference * tan_difference;
+    /// Both zenith angles not negative, the azimuth as sin^2(phi/2) and cos^2(phi/2).
+    #[inline]
+    fn from_half_azimuth(psi: f64, theta: f64, sin2_half_phi: f64, cos2_half_phi: f64) -> Self {
+        let (sin_psi, cos_psi) = sin_cos_quarter(psi);
+        let (sin_theta, cos_theta) = sin_cos_quarter(theta);
+        // The sine and not the tangent, which costs more: it is at most 1/sqrt(2) here.
+        let sin_difference = sin_eighth(0.5 * (psi - theta));
+        let sin2_difference = sin_difference * sin_difference;
+        let tan2_difference = sin2_difference / (1.0 - sin2_difference);
         let h_z = cos_psi + cos_theta;
         let sines = 4.0 * sin_psi * sin_theta;
-        let out_of_plane = cos_half_phi / h_z;
-        let tan2_alpha = tan2_difference + sines * (out_of_plane * out_of_plane);
+        let tan2_alpha = tan2_difference + sines * cos2_half_phi / (h_z * h_z);
         // |source - view|^2, with cos psi - cos theta = -(sin psi + sin theta) tan((psi-theta)/2).
         let sum_of_sines = sin_psi + sin_theta;
         let across = tan2_difference * (sum_of_sines * sum_of_sines + h_z * h_z);
-        let sin2_gamma = 0.25 * (across + sines * (sin_half_phi * sin_half_phi));
+        let sin2_gamma = 0.25 * (across + sines * sin2_half_phi);
         Self::from_parts(cos_psi, cos_theta, tan2_alpha, sin2_gamma)
     }
 
+    #[inline]
     fn from_parts(cos_psi: f64, cos_theta: f64, tan2_alpha: f64, sin2_gamma: f64) -> Self {
         let sec_alpha = (1.0 + tan2_alpha).sqrt();
         Self {

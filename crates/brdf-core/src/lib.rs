@@ -11,6 +11,7 @@ pub mod published;
 mod quadrature;
 pub mod reflectance;
 pub mod shadowing;
+mod trigonometry;
 
 pub use brdf::{ParameterError, Parameters, ThreeParameterBrdf};
 pub use geometry::{Geometry, GeometryError};

@@ -20,6 +20,7 @@ pub fn v_groove(geometry: &Geometry) -> f64 {
 /// G / (cos psi cos theta) = 1 / max(cos psi cos theta,
 ///                                   h_z sec^2 alpha max(cos psi, cos theta) / 4)
 /// ```
+#[inline]
 pub fn v_groove_over_cosines(geometry: &Geometry) -> f64 {
     let (cos_psi, cos_theta) = (geometry.cos_psi, geometry.cos_theta);
     let h_z = cos_psi + cos_theta;

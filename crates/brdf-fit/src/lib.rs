@@ -12,6 +12,7 @@ pub mod stages;
 pub mod synthetic;
 pub mod warning;
 pub mod weights;
+mod words;
 
 pub use measurement::{Measurement, Measurements};
 pub use refractive_index::RefractiveIndex;

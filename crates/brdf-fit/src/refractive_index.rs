@@ -10,6 +10,7 @@ const WAVELENGTH_TOLERANCE: f64 = 0.01;
 
 /// The refractive index n, relative to air.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum RefractiveIndex {
     /// The same at every wavelength.
     Same(f64),

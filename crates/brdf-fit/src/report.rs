@@ -11,6 +11,7 @@ use crate::measurement::{Measurements, Metadata};
 use crate::solver::Ending;
 use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, OwnAndAll, Stage, fit};
 use crate::warning::{Warning, warnings};
+use crate::words::{counted, in_degrees};
 
 /// The result of one wavelength of one file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -115,7 +116,7 @@ impl Report {
         if let Some(fit) = &self.fit {
             let _ = write!(text, "n = {}, ", fit.n);
         }
-        let _ = writeln!(text, "{} readings", self.readings);
+        let _ = writeln!(text, "{}", counted(self.readings, "reading"));
         text
     }
 
@@ -235,7 +236,7 @@ fn write_curves_of(
         .transpose()?;
     let last = model(fit.parameters)?;
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
-    let degrees = |angle: f64| round_to_nanodegrees(angle.to_degrees()).to_string();
+    let degrees = |angle: f64| in_degrees(angle).to_string();
     for incidence in measurements.incidences() {
         let mut order = incidence.readings;
         let readings = measurements.readings();
@@ -267,11 +268,6 @@ fn write_curves_of(
         }
     }
     Ok(())
-}
-
-/// Degrees that went through radians come back as they were written.
-fn round_to_nanodegrees(degrees: f64) -> f64 {
-    (degrees * 1e9).round() / 1e9
 }
 
 fn stage_table(fit: &Fit) -> String {
@@ -326,12 +322,8 @@ fn stage_table(fit: &Fit) -> String {
     if let Some(reason) = &fit.stage1_left_out {
         let _ = writeln!(text, "  stage 1 left out: {reason}");
     } else if fit.stage1.is_some() {
-        let limit = fit.options.stage1_limit.to_degrees();
-        let _ = writeln!(
-            text,
-            "  stage 1: psi <= {} deg",
-            round_to_nanodegrees(limit)
-        );
+        let limit = in_degrees(fit.options.stage1_limit);
+        let _ = writeln!(text, "  stage 1: psi <= {limit} deg");
     }
     let _ = writeln!(text, "  initial values: {}", fit.initial);
     let on_bound: Vec<&str> = [(fit.parameters.k2, "k2"), (fit.parameters.kd, "kD")]
@@ -355,9 +347,7 @@ fn incidence_table(fit: &Fit) -> String {
             format!("  {name:<10}{cells}\n")
         };
         text.push('\n');
-        text += &row("psi deg", &|i| {
-            round_to_nanodegrees(chunk[i].psi_deg).to_string()
-        });
+        text += &row("psi deg", &|i| chunk[i].psi_deg.to_string());
         text += &row("readings", &|i| chunk[i].readings.to_string());
         text += &row("E %", &|i| {
             chunk[i].e_percent.map_or_else(|| "-".to_owned(), digits)
@@ -415,15 +405,5 @@ mod tests {
         assert_eq!(digits(-2.839_658), "-2.83966");
         assert_eq!(digits(123_456_789.0), "1.23457e8");
         assert_eq!(digits(1.5e-9), "1.50000e-9");
-    }
-
-    #[test]
-    fn angles_come_back_as_they_were_written() {
-        for degrees in [0.1_f64, 41.4, 63.256_3, 89.999] {
-            assert_eq!(
-                round_to_nanodegrees(degrees.to_radians().to_degrees()),
-                degrees
-            );
-        }
     }
 }

@@ -12,6 +12,7 @@ use crate::profile::{Profile, ProfilePoint};
 use crate::refractive_index::RefractiveIndex;
 use crate::solver::{Ending, Method, minimise};
 use crate::weights::Weights;
+use crate::words::{as_degrees, counted, in_degrees};
 
 /// Version of the JSON that [`Fit`] is written as.
 pub const FORMAT_VERSION: u32 = 1;
@@ -34,7 +35,8 @@ pub struct FitOptions {
     pub start: Option<Parameters>,
     /// Method of stage 1; `None` leaves the stage out.
     pub stage1: Option<Method>,
-    /// Largest incidence angle of stage 1, in radians.
+    /// Largest incidence angle of stage 1, in radians (in JSON in degrees, `stage1_limit_deg`).
+    #[serde(rename = "stage1_limit_deg", with = "as_degrees")]
     pub stage1_limit: f64,
     /// Method of stage 2.
     pub stage2: Method,
@@ -164,7 +166,7 @@ pub enum FitError {
     )]
     NoRefractiveIndex(Option<f64>),
     /// Fewer readings than [`FEWEST_READINGS`].
-    #[error("{0} readings: three parameters need at least {FEWEST_READINGS}")]
+    #[error("{}: three parameters need at least {FEWEST_READINGS}", counted(*.0, "reading"))]
     TooFewReadings(usize),
     /// All readings have one value.
     #[error(
@@ -313,10 +315,9 @@ impl<'a> FirstStage<'a> {
             return everything(None);
         }
         if readings < FEWEST_READINGS {
-            let limit_deg = options.stage1_limit.to_degrees();
-            return everything(Some(format!(
-                "{readings} readings up to {limit_deg:.6} deg"
-            )));
+            let limit_deg = in_degrees(options.stage1_limit);
+            let count = counted(readings, "reading");
+            return everything(Some(format!("{count} up to {limit_deg} deg")));
         }
         match all.subset(|i| inside[i]) {
             Ok(criterion) => Self {
@@ -404,7 +405,7 @@ fn errors_by_incidence(
                 below += residuals[i].1 * residuals[i].1;
             }
             IncidenceError {
-                psi_deg: incidence.psi.to_degrees(),
+                psi_deg: in_degrees(incidence.psi),
                 readings: incidence.readings.len(),
                 e_percent: (below > 0.0).then(|| 100.0 * above / below),
             }

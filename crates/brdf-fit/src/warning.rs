@@ -10,6 +10,7 @@ use crate::measurement::{Measurement, Measurements};
 use crate::profile::ProfilePoint;
 use crate::solver::{Ending, K1_RANGE};
 use crate::stages::Fit;
+use crate::words::counted;
 
 /// Above this E the model does not describe a sample: the readings are missed by a third of their
 /// size (root of 10 %). The paper's own fits have 1.7 ... 6.5 %.
@@ -117,18 +118,18 @@ impl fmt::Display for Warning {
             Self::WeightNotDetermined { weight, reason } => {
                 write!(f, "the data do not determine {weight}: {reason}")
             }
-            Self::FewIncidences { count } => write!(
-                f,
-                "{count} incidence angle{}: little is known of other incidences",
-                if *count == 1 { "" } else { "s" }
-            ),
+            Self::FewIncidences { count } => {
+                let count = counted(*count, "incidence angle");
+                write!(f, "{count}: little is known of other incidences")
+            }
             Self::NegativeReadings { count } => {
-                write!(f, "{count} negative readings (noise); they are kept")
+                write!(f, "{} below zero (noise), kept", counted(*count, "reading"))
             }
             Self::RepeatedReadings { count } => {
                 write!(
                     f,
-                    "{count} readings repeat the angles of another one; all are kept"
+                    "{} at the same angles as another one, all kept",
+                    counted(*count, "reading")
                 )
             }
             Self::NoMirrorReadings { smallest_tilt_deg } => write!(

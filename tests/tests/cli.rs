@@ -1,0 +1,334 @@
+//! The program `fit` as its user meets it, on input that is in order.
+
+use std::fs;
+use std::process::{Output, Stdio};
+
+use brdf_core::{Geometry, ThreeParameterBrdf};
+use brdf_fit::report::{CURVE_COLUMNS, Document, PARAMETER_COLUMNS};
+use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
+use brdf_tests::{fit_command, in_workspace, run_fit};
+
+fn measured(file: &str) -> String {
+    in_workspace("data/measured")
+        .join(file)
+        .to_str()
+        .unwrap()
+        .to_owned()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn succeeded(output: &Output) {
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(output.stderr.is_empty(), "a pipe gets no progress bar");
+}
+
+#[test]
+fn the_table_tells_every_step() {
+    let output = run_fit([&measured("z307_on_aluminium.csv"), "--n", "1.5"]);
+    succeeded(&output);
+    let text = stdout(&output);
+    for expected in [
+        "Aeroglaze Z307",
+        "0.63079 um, n = 1.5, 112 readings",
+        "initial      ",
+        "stage 1      0.0118084   0.0145258    0.770271    0.655175",
+        "stage 2      0.0228598   0.0179801    0.190763     2.83966     2.83966       112",
+        "levenberg-marquardt: ",
+        "stage 1: psi <= 60 deg",
+        "k2, kD by least squares over the mirror readings",
+        "psi deg            0        10        30        50        70",
+        "readings           1        28        28        28        27",
+        "global check: no lower minimum",
+        "0.85223 um, n = 1.5, 112 readings",
+    ] {
+        assert!(text.contains(expected), "no \"{expected}\" in:\n{text}");
+    }
+}
+
+#[test]
+fn the_parameters_for_scripts_are_those_of_the_library() {
+    let path = measured("z307_on_aluminium.csv");
+    let output = run_fit([path.as_str(), "--n", "1.5", "--params-only"]);
+    succeeded(&output);
+    let mut reader = csv::Reader::from_reader(output.stdout.as_slice());
+    assert_eq!(reader.headers().unwrap(), PARAMETER_COLUMNS.as_slice());
+    let options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(1.5)),
+        ..FitOptions::default()
+    };
+    let scans = Measurements::read_csv(&path).unwrap().by_wavelength();
+    let records: Vec<_> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(records.len(), scans.len());
+    for (record, scan) in records.iter().zip(scans) {
+        let fit = fit(&scan, &options).unwrap();
+        let stage1 = fit.stage1.unwrap();
+        let (p, q) = (fit.parameters, stage1.parameters);
+        let numbers = [
+            p.k2,
+            p.kd,
+            p.k1,
+            fit.e_percent,
+            q.k2,
+            q.kd,
+            q.k1,
+            stage1.e_percent.own,
+        ];
+        for (i, number) in numbers.into_iter().enumerate() {
+            assert_eq!(record[3 + i].parse::<f64>().unwrap(), number);
+        }
+        assert_eq!(&record[0], path.as_str());
+        assert_eq!(&record[11], "ok");
+    }
+}
+
+#[test]
+fn every_run_is_the_same() {
+    let run = |threads: &str| {
+        let files = ["z307_on_aluminium.csv", "titanium_anodise.csv"].map(measured);
+        fit_command()
+            .env("RAYON_NUM_THREADS", threads)
+            .args(files)
+            .args(["--n", "1.5", "--params-only", "--stage1", "nm"])
+            .output()
+            .unwrap()
+            .stdout
+    };
+    assert_eq!(run("1"), run("2"));
+    assert_eq!(run("2"), run("2"));
+}
+
+#[test]
+fn the_json_reads_back_and_the_curves_agree_with_the_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let (json, curves) = (
+        folder.path().join("fit.json"),
+        folder.path().join("curves.csv"),
+    );
+    let output = fit_command()
+        .arg(measured("titanium_anodise.csv"))
+        .args(["--n", "1.5", "--json"])
+        .arg(&json)
+        .arg("--curves")
+        .arg(&curves)
+        .output()
+        .unwrap();
+    succeeded(&output);
+
+    let document: Document = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    assert_eq!((document.format_version, document.reports.len()), (1, 2));
+    let written = serde_json::to_value(&document).unwrap();
+    let original: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    assert_eq!(written, original);
+
+    let mut reader = csv::Reader::from_path(&curves).unwrap();
+    assert_eq!(reader.headers().unwrap(), CURVE_COLUMNS.as_slice());
+    let mut rows = 0;
+    for record in reader.records().map(Result::unwrap) {
+        let number = |i: usize| record[i].parse::<f64>().unwrap();
+        let report = document
+            .reports
+            .iter()
+            .find(|r| r.wavelength_um == Some(number(1)))
+            .unwrap();
+        let fit = report.fit.as_ref().unwrap();
+        let brdf = ThreeParameterBrdf::new(fit.parameters, fit.n).unwrap();
+        let [psi, theta, phi] = [2, 3, 4].map(|i| number(i).to_radians());
+        let theory = brdf.value(&Geometry::new(psi, theta, phi).unwrap());
+        assert!((number(9) / theory - 1.0).abs() < 1e-9);
+        rows += 1;
+    }
+    assert_eq!(rows, 108 + 104);
+    assert_eq!(
+        fs::read_dir(folder.path()).unwrap().count(),
+        2,
+        "nothing temporary is left"
+    );
+}
+
+#[test]
+fn synthetic_scans_bring_their_index_and_give_back_table_1() {
+    let path = in_workspace("data/synthetic/table1_001_0.44um.csv");
+    let output = run_fit([path.to_str().unwrap(), "--params-only"]);
+    succeeded(&output);
+    let text = stdout(&output);
+    let fields: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
+    assert_eq!(fields[2], "1.699");
+    assert_eq!(fields[4], "0", "kD is exactly on its bound");
+    assert!((fields[3].parse::<f64>().unwrap() - 1.137).abs() < 1e-8);
+    assert!((fields[5].parse::<f64>().unwrap() - 0.130).abs() < 1e-9);
+}
+
+#[test]
+fn the_index_can_be_given_for_each_wavelength() {
+    let path = measured("z307_on_aluminium.csv");
+    let output = run_fit([&path, "--n", "0.63=1.60,0.85=1.58", "--params-only"]);
+    succeeded(&output);
+    let text = stdout(&output);
+    let index = |line: usize| text.lines().nth(line).unwrap().split(',').nth(2).unwrap();
+    assert_eq!((index(1), index(2)), ("1.6", "1.58"));
+}
+
+/// The same scan in the other convention, as instruments write it.
+#[test]
+fn another_convention_gives_the_same_fit() {
+    let original = fs::read_to_string(measured("z307_on_aluminium.csv")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("z307_on_aluminium.csv");
+    let turned: String = original
+        .lines()
+        .map(|line| {
+            let fields: Vec<&str> = line.split(',').collect();
+            let Ok(theta) = fields.get(2).unwrap_or(&"").parse::<f64>() else {
+                return format!("{}\r\n", line.replace(',', ";"));
+            };
+            let row = format!("{};{};{};{}\r\n", fields[0], fields[1], -theta, fields[3]);
+            row.replace('.', ",")
+        })
+        .collect();
+    fs::write(&path, format!("\u{feff}{turned}")).unwrap();
+    let run = |path: &str, convention: &[&str]| {
+        let mut arguments = vec![path, "--n", "1.5", "--params-only"];
+        arguments.extend(convention);
+        let text = stdout(&run_fit(arguments));
+        text.lines()
+            .map(|line| line.split_once(',').unwrap().1.to_owned())
+            .collect::<Vec<_>>()
+    };
+    let turned_back = run(path.to_str().unwrap(), &["--theta-positive", "forward"]);
+    assert_eq!(turned_back, run(&measured("z307_on_aluminium.csv"), &[]));
+
+    let wrong = run_fit([path.to_str().unwrap(), "--n", "1.5"]);
+    assert!(
+        stdout(&wrong).contains("--theta-positive forward"),
+        "{}",
+        stdout(&wrong)
+    );
+}
+
+#[test]
+fn stages_methods_limit_and_weights_can_be_chosen() {
+    let path = measured("z307_on_aluminium.csv");
+    let run = |extra: &[&str]| {
+        let mut arguments = vec![path.as_str(), "--n", "1.5"];
+        arguments.extend(extra);
+        let output = run_fit(arguments);
+        succeeded(&output);
+        stdout(&output)
+    };
+    let text = run(&[
+        "--stage1",
+        "nelder-mead",
+        "--stage2",
+        "nm",
+        "--stage1-limit",
+        "30",
+    ]);
+    assert!(text.contains("nelder-mead: simplex converged"));
+    assert!(text.contains("stage 1: psi <= 30 deg"));
+    assert!(!run(&["--stage1", "none"]).contains("stage 1"));
+    assert!(run(&["--stage1-limit", "5"]).contains("stage 1 left out: 1 reading up to 5 deg"));
+    let weighted = run(&["--g1", "60=1,70=0", "--g2", "-90=0.5,0=1"]);
+    assert!(!weighted.contains("2.83966"));
+    let text = run(&["--max-iterations", "1"]);
+    assert!(text.contains("stage 2 used up its iterations"));
+    assert!(text.contains("a lower minimum exists and was taken"));
+    assert!(text.contains("result       0.0228598   0.0179801    0.190763     2.83966"));
+}
+
+#[test]
+fn what_is_odd_about_the_readings_is_counted_and_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("odd.csv");
+    let mut text = "psi_deg,theta_deg,brdf_per_sr,temperature\n".to_owned();
+    for theta in [60, 50, 50, 40, 30, 20, 10, 5, 0] {
+        let brdf = 0.01 + 0.2 / (1.0 + f64::from((theta - 45) * (theta - 45)) / 50.0);
+        text += &format!("45,{theta},{},20\n", if theta == 0 { -0.001 } else { brdf });
+    }
+    fs::write(&path, text).unwrap();
+    let output = run_fit([
+        path.to_str().unwrap(),
+        "--n",
+        "1.5",
+        "--theta-positive",
+        "source",
+    ]);
+    succeeded(&output);
+    let text = stdout(&output);
+    for expected in [
+        "wavelength not stated, n = 1.5, 9 readings",
+        "1 reading below zero (noise), kept",
+        "1 reading at the same angles as another one, all kept",
+        "1 incidence angle: little is known of other incidences",
+        "nothing was measured near the mirror direction",
+        "columns not used: temperature",
+    ] {
+        assert!(text.contains(expected), "no \"{expected}\" in:\n{text}");
+    }
+}
+
+#[test]
+fn a_flat_scan_has_no_width() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("flat.csv");
+    let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
+    for psi in [0, 30, 60] {
+        for theta in (-80..=80).step_by(10) {
+            // Falls towards grazing, where any specular part would rise.
+            let brdf =
+                0.3 - f64::from((theta + psi) * (theta + psi)) * -1e-6 - f64::from(psi) * 1e-3;
+            text += &format!("{psi},{theta},{brdf}\n");
+        }
+    }
+    fs::write(&path, text).unwrap();
+    let output = run_fit([path.to_str().unwrap(), "--n", "1.5"]);
+    succeeded(&output);
+    let text = stdout(&output);
+    assert!(text.contains("the data do not determine k1"), "{text}");
+    assert!(text.contains("on its bound: k2 = 0"), "{text}");
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let mut child = fit_command()
+        .args([measured("z307_on_aluminium.csv").as_str(), "--n", "1.5"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(output.stderr.is_empty());
+}
+
+#[test]
+fn the_help_names_every_option_with_its_unit_and_default() {
+    let output = run_fit(["--help"]);
+    succeeded(&output);
+    let text = stdout(&output);
+    for expected in [
+        "--n <INDEX>",
+        "--stage1 <METHOD>",
+        "--stage2 <METHOD>",
+        "in degrees",
+        "[default: 60]",
+        "[default: levenberg-marquardt]",
+        "[default: 10000]",
+        "--theta-positive <SIDE>",
+        "--phi-zero <SIDE>",
+        "[default: source]",
+        "--params-only",
+        "Exit status",
+    ] {
+        assert!(text.contains(expected), "no \"{expected}\" in:\n{text}");
+    }
+}

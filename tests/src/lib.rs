@@ -1,6 +1,11 @@
 //! What the end-to-end tests share: where things are, the built programs, noise, and the
 //! independently computed optima.
 
+#![expect(
+    clippy::missing_panics_doc,
+    reason = "tests panic, that is how they fail"
+)]
+
 pub mod data;
 pub mod picture;
 pub mod textbook;

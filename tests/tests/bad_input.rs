@@ -134,9 +134,13 @@ fn scans_that_cannot_be_fitted() {
         "3 readings",
     );
     let constant = |value: &str| {
-        let rows: String = (0..9)
-            .map(|i| format!("{},{},{value}\n", 10 * i, 5 * i))
+        let rows: Vec<String> = (0..9)
+            .map(|i| format!("{},{},{value}", 10 * i, 5 * i))
             .collect();
+        let rows = rows.join(
+            "
+",
+        );
         format!("{HEADER}{rows}")
     };
     expect(constant("0"), FAILED, "all readings are zero");

@@ -1,5 +1,6 @@
 //! The program `fit` as its user meets it, on input that is in order.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::process::{Output, Stdio};
 
@@ -251,7 +252,12 @@ fn what_is_odd_about_the_readings_is_counted_and_kept() {
     let mut text = "psi_deg,theta_deg,brdf_per_sr,temperature\n".to_owned();
     for theta in [60, 50, 50, 40, 30, 20, 10, 5, 0] {
         let brdf = 0.01 + 0.2 / (1.0 + f64::from((theta - 45) * (theta - 45)) / 50.0);
-        text += &format!("45,{theta},{},20\n", if theta == 0 { -0.001 } else { brdf });
+        writeln!(
+            text,
+            "45,{theta},{},20",
+            if theta == 0 { -0.001 } else { brdf }
+        )
+        .unwrap();
     }
     fs::write(&path, text).unwrap();
     let output = run_fit([
@@ -285,7 +291,7 @@ fn a_flat_scan_has_no_width() {
             // Falls towards grazing, where any specular part would rise.
             let brdf =
                 0.3 - f64::from((theta + psi) * (theta + psi)) * -1e-6 - f64::from(psi) * 1e-3;
-            text += &format!("{psi},{theta},{brdf}\n");
+            writeln!(text, "{psi},{theta},{brdf}").unwrap();
         }
     }
     fs::write(&path, text).unwrap();

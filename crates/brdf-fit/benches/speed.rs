@@ -46,6 +46,19 @@ fn evaluation(c: &mut Criterion) {
                 .sum::<f64>()
         });
     });
+    group.bench_function("sines and cosines of the standard library alone", |b| {
+        let sum = |(sin, cos): (f64, f64)| sin + cos;
+        b.iter(|| {
+            let of = |[psi, theta, phi]: [f64; 3]| {
+                let half_difference = (0.5 * (psi - theta)).sin();
+                sum(psi.sin_cos())
+                    + sum(theta.sin_cos())
+                    + sum((0.5 * phi).sin_cos())
+                    + half_difference
+            };
+            angles.iter().map(|&a| of(black_box(a))).sum::<f64>()
+        });
+    });
     group.bench_function("value from a geometry", |b| {
         b.iter(|| {
             geometries

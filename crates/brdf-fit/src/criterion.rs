@@ -257,7 +257,9 @@ impl Criterion {
         }
         let norm = largest * self.sum::<4, 1>(|y, _, _, _| [(y / largest).powi(2)])[0].sqrt();
         for column in [&mut self.measured, &mut self.diffuse, &mut self.specular] {
-            column.iter_mut().for_each(|value| *value /= norm);
+            for value in column {
+                *value /= norm;
+            }
         }
         [self.diffuse_squared, self.diffuse_measured] =
             self.sum::<4, 2>(|y, a, _, _| [a * a, a * y]);
@@ -358,7 +360,9 @@ mod tests {
         let expected = criterion(&Weights::default());
         for size in [1e-200, 1e200] {
             let mut readings = distorted_scan();
-            readings.iter_mut().for_each(|r| r.brdf *= size);
+            for reading in &mut readings {
+                reading.brdf *= size;
+            }
             let scaled = Criterion::new(&readings, N, &Weights::default()).unwrap();
             for (a, b) in scaled.measured.iter().zip(&expected.measured) {
                 assert!((a - b).abs() < 1e-14);

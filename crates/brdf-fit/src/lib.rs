@@ -1,4 +1,31 @@
-//! fit
+//! From a goniometer scan to the parameters of [`brdf_core`]'s model, in the two stages of Li, Yan
+//! and Wu (2002) and with a check of the global optimum.
+//!
+//! ```no_run
+//! use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
+//!
+//! let options = FitOptions {
+//!     refractive_index: Some(RefractiveIndex::Same(1.5)),
+//!     ..FitOptions::default()
+//! };
+//! for scan in Measurements::read_csv("data/measured/z307_on_aluminium.csv")?.by_wavelength() {
+//!     let fit = fit(&scan, &options)?;
+//!     println!("{:?}: E = {} %", fit.parameters, fit.e_percent);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The data flow one way:
+//!
+//! ```text
+//! file -> read -> Measurements -> initial -> stages -> Fit -> warning, report
+//!                                     |         |
+//!                                 criterion, profile, solver
+//! ```
+//!
+//! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
+//! on screens only, with `_deg` in the name.
+
 pub mod criterion;
 pub mod initial;
 pub mod measurement;

@@ -158,27 +158,26 @@ impl Measurements {
                 all.push(reading.wavelength_um);
             }
         }
-        all.sort_by(|a, b| {
-            a.partial_cmp(b)
-                .expect("wavelengths were checked not to be NaN")
-        });
+        all.sort_by(|a, b| a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0)));
         all
     }
 
     /// The readings of each wavelength by themselves, in ascending order of wavelength.
-    pub fn by_wavelength(&self) -> Vec<Self> {
-        self.wavelengths()
-            .into_iter()
-            .map(|wavelength| Self {
-                readings: self
-                    .readings
-                    .iter()
-                    .filter(|reading| reading.wavelength_um == wavelength)
-                    .copied()
-                    .collect(),
-                ..self.without_readings()
-            })
-            .collect()
+    pub fn by_wavelength(self) -> Vec<Self> {
+        let wavelengths = self.wavelengths();
+        if wavelengths.len() <= 1 {
+            return vec![self];
+        }
+        let of = |wavelength: Option<f64>| Self {
+            readings: self
+                .readings
+                .iter()
+                .filter(|reading| reading.wavelength_um == wavelength)
+                .copied()
+                .collect(),
+            ..self.without_readings()
+        };
+        wavelengths.into_iter().map(of).collect()
     }
 
     /// The incidences in ascending order, each with its readings. Angles that differ by less than

@@ -12,9 +12,10 @@ use serde::{Deserialize, Serialize};
 use crate::criterion::{Criterion, ProfileSums};
 use crate::solver::K1_RANGE;
 
-/// Steps of the search in ln k1. As a function of ln k1 the model has its nearest singularity at
-/// a distance of pi/2 in the complex plane, so its profile cannot have features much narrower.
-const STEP: f64 = 0.25;
+/// Steps of the search, equal in ln k1: 0.25 each. As a function of ln k1 the model has its nearest
+/// singularity at a distance of pi/2 in the complex plane, so that its profile cannot have
+/// features much narrower.
+const STEPS: u32 = 83;
 
 /// A minimum is refined until ln k1 is known to this: E, flat there, is then known to 1e-10 of itself.
 const REFINED: f64 = 1e-5;
@@ -72,13 +73,12 @@ impl Profile {
     /// Evaluates the profile over [`K1_RANGE`].
     pub fn search(criterion: &Criterion) -> Self {
         let span = (K1_RANGE.1 / K1_RANGE.0).ln();
-        let steps = (span / STEP).ceil() as u32;
         let k1 = |step| match step {
             0 => K1_RANGE.0,
-            _ if step == steps => K1_RANGE.1,
-            _ => K1_RANGE.0 * (span * f64::from(step) / f64::from(steps)).exp(),
+            STEPS => K1_RANGE.1,
+            _ => K1_RANGE.0 * (span * f64::from(step) / f64::from(STEPS)).exp(),
         };
-        let points = (0..=steps)
+        let points = (0..=STEPS)
             .map(|step| best_weights(criterion, k1(step)))
             .collect();
         Self { points }

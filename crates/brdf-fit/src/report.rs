@@ -79,16 +79,13 @@ impl Report {
     /// The table that a person reads.
     pub fn text(&self) -> String {
         let mut text = self.heading();
-        match &self.fit {
-            Some(fit) => {
-                text += &stage_table(fit);
-                text += &incidence_table(fit);
-                text += &global_check_line(fit);
-            }
-            None => {
-                let error = self.error.as_deref().unwrap_or("no fit");
-                let _ = writeln!(text, "  error: {error}");
-            }
+        if let Some(fit) = &self.fit {
+            text += &stage_table(fit);
+            text += &incidence_table(fit);
+            text += &global_check_line(fit);
+        } else {
+            let error = self.error.as_deref().unwrap_or("no fit");
+            let _ = writeln!(text, "  error: {error}");
         }
         for warning in &self.warnings {
             let _ = writeln!(text, "  warning: {warning}");
@@ -341,10 +338,12 @@ fn incidence_table(fit: &Fit) -> String {
     let mut text = String::new();
     for chunk in fit.incidences.chunks(A_ROW) {
         let row = |name: &str, cell: &dyn Fn(usize) -> String| {
-            let cells: String = (0..chunk.len())
-                .map(|i| format!("{:>10}", cell(i)))
-                .collect();
-            format!("  {name:<10}{cells}\n")
+            let mut row = format!("  {name:<10}");
+            for i in 0..chunk.len() {
+                let _ = write!(row, "{:>10}", cell(i));
+            }
+            row + "
+"
         };
         text.push('\n');
         text += &row("psi deg", &|i| chunk[i].psi_deg.to_string());
@@ -385,12 +384,17 @@ fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    let exponent = value.abs().log10().floor();
-    if !(-4.0..6.0).contains(&exponent) {
-        return format!("{value:.5e}");
+    let scientific = format!("{value:.5e}");
+    let exponent = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok());
+    match exponent {
+        Some(exponent @ -4..=5) => {
+            let decimals = usize::try_from(5_i32 - exponent).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
     }
-    let decimals = (5.0 - exponent).max(0.0) as usize;
-    format!("{value:.decimals$}")
 }
 
 #[cfg(test)]

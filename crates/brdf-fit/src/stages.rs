@@ -162,7 +162,7 @@ pub enum FitError {
     #[error(
         "no refractive index{}: give it with --n 1.5 or --n 0.63=1.60,0.85=1.58, by a column n, \
          or by a line \"# refractive_index: 1.5\" in the file",
-        at_wavelength(.0)
+        at_wavelength(*.0)
     )]
     NoRefractiveIndex(Option<f64>),
     /// Fewer readings than [`FEWEST_READINGS`].
@@ -197,7 +197,7 @@ impl FitError {
     }
 }
 
-fn at_wavelength(wavelength_um: &Option<f64>) -> String {
+fn at_wavelength(wavelength_um: Option<f64>) -> String {
     wavelength_um.map_or_else(String::new, |w| format!(" at {w} um"))
 }
 

@@ -5,7 +5,7 @@ use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
 use crate::measurement::{Measurement, Measurements};
 
 /// Incidence angles of a computed scan, in degrees.
-pub const PSI_DEG: [u32; 8] = [0, 10, 20, 30, 40, 50, 60, 70];
+pub const PSI_DEG: [i32; 8] = [0, 10, 20, 30, 40, 50, 60, 70];
 
 /// No reading is nearer to the source than this, in degrees: there the detector blocks the light.
 const BLOCKED_DEG: i32 = 5;
@@ -19,7 +19,7 @@ pub fn scan(parameters: Parameters, n: f64) -> Measurements {
         return Measurements::default();
     };
     let angles = PSI_DEG.into_iter().flat_map(|psi_deg| {
-        let away = move |theta_deg: &i32| theta_deg.abs_diff(psi_deg as i32) >= BLOCKED_DEG as u32;
+        let away = move |theta_deg: &i32| (theta_deg - psi_deg).abs() >= BLOCKED_DEG;
         (-80..=80)
             .step_by(5)
             .filter(away)

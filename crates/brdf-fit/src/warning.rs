@@ -300,7 +300,7 @@ fn weights_not_determined(
     // kD may well be near 0; what matters then is how much of the whole it might be.
     [("k2", 0, k2, k2), ("kD", 1, kd, kd.max(0.5 * level))]
         .into_iter()
-        .filter(|&(_, i, _, largest)| !(standard_error(i) <= largest))
+        .filter(|&(_, i, _, largest)| standard_error(i).is_nan() || standard_error(i) > largest)
         .map(|(name, i, value, _)| Warning::WeightNotDetermined {
             weight: name.to_owned(),
             reason: format!(
@@ -309,4 +309,123 @@ fn weights_not_determined(
             ),
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::refractive_index::RefractiveIndex;
+    use crate::stages::{FitOptions, fit};
+    use crate::synthetic::scan;
+
+    fn warnings_of(readings: Vec<Measurement>, change: impl Fn(&mut FitOptions)) -> Vec<Warning> {
+        let scan = Measurements::new("test", readings).unwrap();
+        let mut options = FitOptions {
+            refractive_index: Some(RefractiveIndex::Same(1.5)),
+            ..FitOptions::default()
+        };
+        change(&mut options);
+        warnings(&scan, &fit(&scan, &options).unwrap())
+    }
+
+    /// A scan with 2 % of ripple, which the model fits well and no parameter follows.
+    fn rippled(k2: f64, kd: f64, k1: f64) -> Vec<Measurement> {
+        let mut readings = scan(Parameters::new(k2, kd, k1).unwrap(), 1.5)
+            .readings()
+            .to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.02 * (2.4 * i as f64).sin();
+        }
+        readings
+    }
+
+    #[test]
+    fn a_good_scan_has_no_warning() {
+        assert_eq!(warnings_of(rippled(0.1, 0.1, 0.2), |_| ()), []);
+    }
+
+    #[test]
+    fn a_peak_between_the_readings_has_no_width() {
+        let mut readings = rippled(0.1, 0.1, 0.2);
+        for reading in &mut readings {
+            let is_mirror = reading.theta == -reading.psi;
+            reading.brdf = if is_mirror { 1e3 } else { reading.brdf };
+        }
+        let all = warnings_of(readings, |_| ());
+        let narrower = |w: &Warning| matches!(w, Warning::WidthNotDetermined { reason, .. } if reason.contains("narrower"));
+        assert!(all.iter().any(narrower), "{all:?}");
+    }
+
+    #[test]
+    fn a_lambertian_scan_has_neither_width_nor_specular_weight() {
+        let readings = rippled(0.0, 0.3, 1.0);
+        let all = warnings_of(readings, |_| ());
+        let open = |w: &Warning| {
+            matches!(
+                w,
+                Warning::WidthNotDetermined { .. } | Warning::WeightNotDetermined { .. }
+            )
+        };
+        assert!(all.iter().any(open), "{all:?}");
+    }
+
+    #[test]
+    fn readings_on_the_flank_alone_leave_the_weights_open() {
+        // Far from the mirror direction the lobe is k2 k1^2 / tan^2 alpha: one number for two.
+        let readings = rippled(0.1, 0.1, 0.02);
+        let flank = readings
+            .into_iter()
+            .filter(|r| r.psi < 0.4 && r.theta > 0.0)
+            .collect();
+        let all = warnings_of(flank, |_| ());
+        assert!(
+            all.iter()
+                .any(|w| matches!(w, Warning::NoMirrorReadings { .. })),
+            "{all:?}"
+        );
+        let open = |w: &Warning| matches!(w, Warning::WeightNotDetermined { weight, .. } if weight.starts_with("k2"));
+        assert!(all.iter().any(open), "{all:?}");
+    }
+
+    #[test]
+    fn too_much_reflectance_is_told_with_its_angle() {
+        let all = warnings_of(rippled(0.156, 0.584, 1.338), |_| ());
+        let angle = all.iter().find_map(|w| match w {
+            Warning::ReflectanceAboveOne { psi_deg } => Some(*psi_deg),
+            _ => None,
+        });
+        assert!((40.0..65.0).contains(&angle.unwrap()));
+    }
+
+    #[test]
+    fn a_scan_in_the_other_convention_is_noticed() {
+        let mut readings = rippled(0.1, 0.1, 0.2);
+        for reading in &mut readings {
+            reading.theta = -reading.theta;
+        }
+        let all = warnings_of(readings, |_| ());
+        assert!(
+            all.iter().any(|w| matches!(w, Warning::TurnedRound { .. })),
+            "{all:?}"
+        );
+    }
+
+    #[test]
+    fn used_up_iterations_are_told() {
+        let all = warnings_of(rippled(0.1, 0.1, 0.2), |options| options.max_iterations = 1);
+        assert!(all.contains(&Warning::IterationLimit { stage: 1 }));
+        assert!(all.contains(&Warning::IterationLimit { stage: 2 }));
+    }
+
+    #[test]
+    fn each_repetition_is_counted() {
+        let mut readings = rippled(0.1, 0.1, 0.2);
+        let again = [readings[3], readings[3], readings[7]];
+        readings.extend(again);
+        let all = warnings_of(readings, |_| ());
+        assert!(
+            all.contains(&Warning::RepeatedReadings { count: 3 }),
+            "{all:?}"
+        );
+    }
 }

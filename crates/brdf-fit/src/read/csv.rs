@@ -550,9 +550,14 @@ impl Row<'_> {
 }
 
 fn parse_number(field: &[u8], decimal_comma: bool) -> Option<f64> {
-    let text = std::str::from_utf8(field.trim_ascii()).ok()?;
-    match text.parse() {
-        Err(_) if decimal_comma && !text.contains('.') => text.replacen(',', ".", 1).parse().ok(),
+    let field = field.trim_ascii();
+    match fast_float2::parse(field) {
+        Err(_) if decimal_comma && !field.contains(&b'.') => {
+            let comma = field.iter().position(|&byte| byte == b',')?;
+            let mut with_point = field.to_vec();
+            with_point[comma] = b'.';
+            fast_float2::parse(with_point).ok()
+        }
         result => result.ok(),
     }
 }

@@ -99,7 +99,8 @@ impl<const P: usize> LevenbergMarquardt<P> {
         let mut free = self.free(param, &equations.gradient);
         let mut step = SVector::zeros();
         // Each working set lowers the model, so that none comes twice: there are 3^P at the most.
-        for _ in 0..3_usize.pow(P as u32) {
+        let working_sets = (0..P).fold(1, |count, _| 3 * count);
+        for _ in 0..working_sets {
             let target = solve(&matrix, &equations.gradient, &free, &step)?;
             let way = target - step;
             let fraction = |j: usize| {

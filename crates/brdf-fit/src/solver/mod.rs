@@ -102,10 +102,16 @@ pub fn minimise(
     start: Parameters,
     max_iterations: u64,
 ) -> Result<Minimum, Error> {
-    match method {
-        Method::NelderMead => by_nelder_mead(criterion, start, max_iterations),
-        Method::LevenbergMarquardt => by_levenberg_marquardt(criterion, start, max_iterations),
-    }
+    let found = match method {
+        Method::NelderMead => by_nelder_mead(criterion, start, max_iterations)?,
+        Method::LevenbergMarquardt => by_levenberg_marquardt(criterion, start, max_iterations)?,
+    };
+    let parameters = onto_bounds(criterion, found.parameters);
+    Ok(Minimum {
+        parameters,
+        error: criterion.error(&parameters),
+        ..found
+    })
 }
 
 fn by_levenberg_marquardt(
@@ -139,18 +145,16 @@ fn by_nelder_mead(
     let problem = Unbounded::new(criterion, K1_RANGE);
     let start = problem.to_coordinates(start);
     // A weight that starts at zero must be able to leave it: a step as for a Lambertian surface.
-    let weight_step = 0.5 * criterion.lambertian_weight().abs().sqrt();
+    let weight_step = 0.5 * criterion.lambertian_weight().abs().sqrt().max(1e-6);
     let solver = NelderMead::new(start, Vector3::new(weight_step, weight_step, 1.0));
     let result = Executor::new(problem, solver)
         .configure(|state| state.max_iters(max_iterations))
         .ctrlc(false)
         .run()?;
     let state = result.state;
-    let best = problem.to_parameters(state.get_best_param().unwrap_or(&start));
-    let parameters = onto_bounds(criterion, best);
     Ok(Minimum {
-        parameters,
-        error: criterion.error(&parameters),
+        parameters: problem.to_parameters(state.get_best_param().unwrap_or(&start)),
+        error: state.get_best_cost(),
         iterations: state.get_iter(),
         evaluations: result.problem.counts.values().sum(),
         ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
@@ -159,7 +163,7 @@ fn by_nelder_mead(
 
 /// Puts a weight exactly on its bound where E does not become larger by that.
 ///
-/// A simplex comes as near to a bound as E can tell, and no nearer: to 1e-13 of E, or where E is
+/// A minimiser comes as near to a bound as E can tell, and no nearer: to 1e-13 of E, or where E is
 /// nothing but rounding to 1e-10 of the readings.
 fn onto_bounds(criterion: &Criterion, best: Parameters) -> Parameters {
     [

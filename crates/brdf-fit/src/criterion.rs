@@ -54,13 +54,16 @@ pub(crate) struct ProfileSums {
 }
 
 /// Why E is not defined for a set of readings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum CriterionError {
     /// Weights by sigma, and a reading without one.
     #[error(
         "weights by 1/sigma^2 need the standard deviation of every reading (column sigma_per_sr)"
     )]
     NoSigma,
+    /// The squares of the readings, or of what they are divided by, leave the range of numbers.
+    #[error("the largest reading weighs {0:e} 1/sr: expected a BRDF between 1e-100 and 1e100 1/sr")]
+    Size(f64),
     /// The denominator of E is zero.
     #[error("all readings are zero, or weigh nothing: E of eq. (5) is not defined")]
     AllZero,
@@ -247,13 +250,15 @@ impl Criterion {
 
     /// Divides by the denominator of E, and sums what does not depend on the parameters.
     fn normalised(mut self) -> Result<Self, CriterionError> {
-        // The largest value first, so that the squares neither overflow nor vanish.
         let largest = self
             .measured
             .iter()
             .fold(0.0_f64, |max, y| max.max(y.abs()));
         if largest == 0.0 {
             return Err(CriterionError::AllZero);
+        }
+        if !(1e-100..=1e100).contains(&largest) {
+            return Err(CriterionError::Size(largest));
         }
         let norm = largest * self.sum::<4, 1>(|y, _, _, _| [(y / largest).powi(2)])[0].sqrt();
         for column in [&mut self.measured, &mut self.diffuse, &mut self.specular] {
@@ -358,7 +363,7 @@ mod tests {
     #[test]
     fn the_size_of_the_readings_does_not_matter() {
         let expected = criterion(&Weights::default());
-        for size in [1e-200, 1e200] {
+        for size in [1e-90, 1e90] {
             let mut readings = distorted_scan();
             for reading in &mut readings {
                 reading.brdf *= size;
@@ -367,6 +372,21 @@ mod tests {
             for (a, b) in scaled.measured.iter().zip(&expected.measured) {
                 assert!((a - b).abs() < 1e-14);
             }
+        }
+    }
+
+    #[test]
+    fn readings_beyond_any_brdf_are_an_error() {
+        for size in [1e-200, 1e200] {
+            let mut readings = distorted_scan();
+            for reading in &mut readings {
+                reading.brdf *= size;
+            }
+            let error = Criterion::new(&readings, N, &Weights::default()).unwrap_err();
+            assert!(
+                error.to_string().contains("expected a BRDF between"),
+                "{error}"
+            );
         }
     }
 

@@ -25,7 +25,8 @@ const REFINED: f64 = 1e-5;
 pub struct ProfilePoint {
     /// k2, kD and k1.
     pub parameters: Parameters,
-    /// E as a fraction.
+    /// E as a fraction (in JSON `e_fraction`).
+    #[serde(rename = "e_fraction")]
     pub error: f64,
 }
 

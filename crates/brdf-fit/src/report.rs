@@ -269,12 +269,12 @@ fn write_curves_of(
 
 fn stage_table(fit: &Fit) -> String {
     let mut text = format!(
-        "\n  {:<10}{:>12}{:>12}{:>12}{:>12}{:>12}{:>10}{:>8}{:>8}{:>11}  ended by\n",
+        "\n  {:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{:>10}{:>7}{:>7}{:>9}  ended by\n",
         "", "k2", "kD", "k1", "E own %", "E all %", "readings", "iter.", "eval.", "time us"
     );
     let mut line = |name: &str, p: &Parameters, e: OwnAndAll, rest: &str| {
         let row = format!(
-            "  {name:<10}{:>12}{:>12}{:>12}{:>12}{:>12}{rest}",
+            "  {name:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{rest}",
             digits(p.k2),
             digits(p.kd),
             digits(p.k1),
@@ -285,12 +285,12 @@ fn stage_table(fit: &Fit) -> String {
     };
     let work = |stage: &Stage| {
         format!(
-            "{:>10}{:>8}{:>8}{:>11.1}  {}: {}",
+            "{:>10}{:>7}{:>7}{:>9.1}  {}: {}",
             stage.readings,
             stage.iterations,
             stage.evaluations,
             1e6 * stage.seconds,
-            stage.method,
+            stage.method.short_name(),
             stage.ending
         )
     };
@@ -323,6 +323,10 @@ fn stage_table(fit: &Fit) -> String {
         let _ = writeln!(text, "  stage 1: psi <= {limit} deg");
     }
     let _ = writeln!(text, "  initial values: {}", fit.initial);
+    let weights = fit.options.weights.to_string();
+    if !weights.is_empty() {
+        let _ = writeln!(text, "  readings weighted by {weights}");
+    }
     let on_bound: Vec<&str> = [(fit.parameters.k2, "k2"), (fit.parameters.kd, "kD")]
         .into_iter()
         .filter_map(|(value, name)| (value == 0.0).then_some(name))
@@ -334,13 +338,13 @@ fn stage_table(fit: &Fit) -> String {
 }
 
 fn incidence_table(fit: &Fit) -> String {
-    const A_ROW: usize = 10;
+    const A_ROW: usize = 9;
     let mut text = String::new();
     for chunk in fit.incidences.chunks(A_ROW) {
         let row = |name: &str, cell: &dyn Fn(usize) -> String| {
-            let mut row = format!("  {name:<10}");
+            let mut row = format!("  {name:<9}");
             for i in 0..chunk.len() {
-                let _ = write!(row, "{:>10}", cell(i));
+                let _ = write!(row, "{:>13}", cell(i));
             }
             row + "
 "

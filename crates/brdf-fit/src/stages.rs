@@ -412,3 +412,113 @@ fn errors_by_incidence(
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::Measurement;
+    use crate::synthetic::scan;
+
+    fn truth() -> Parameters {
+        Parameters::new(0.3, 0.1, 0.2).unwrap()
+    }
+
+    fn options() -> FitOptions {
+        FitOptions {
+            refractive_index: Some(RefractiveIndex::Same(1.5)),
+            ..FitOptions::default()
+        }
+    }
+
+    /// The scan without the incidences that `keep` refuses.
+    fn scan_with(keep: impl Fn(&Measurement) -> bool) -> Measurements {
+        let all = scan(truth(), 1.5);
+        let readings = all.readings().iter().copied().filter(keep).collect();
+        Measurements::new("test", readings).unwrap()
+    }
+
+    #[test]
+    fn stage_1_uses_the_incidences_up_to_its_limit_and_stage_2_all() {
+        let fit = fit(&scan(truth(), 1.5), &options()).unwrap();
+        let up_to_60: usize = fit
+            .incidences
+            .iter()
+            .filter(|i| i.psi_deg <= 60.0)
+            .map(|i| i.readings)
+            .sum();
+        assert_eq!(fit.stage1.unwrap().readings, up_to_60);
+        assert_eq!(fit.stage2.readings, fit.readings);
+        assert!(up_to_60 < fit.readings);
+    }
+
+    #[test]
+    fn stage_1_without_readings_is_left_out_and_says_why() {
+        let fit = fit(&scan_with(|r| r.psi > 1.1), &options()).unwrap();
+        assert_eq!(fit.stage1, None);
+        assert_eq!(
+            fit.stage1_left_out.as_deref(),
+            Some("0 readings up to 60 deg")
+        );
+    }
+
+    #[test]
+    fn a_given_start_is_where_the_first_stage_starts() {
+        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
+        let fit = fit(
+            &scan(truth(), 1.5),
+            &FitOptions {
+                start: Some(start),
+                ..options()
+            },
+        )
+        .unwrap();
+        assert_eq!(fit.initial.parameters, start);
+        assert_eq!(fit.initial.weights, None);
+    }
+
+    #[test]
+    fn a_minimum_that_stage_2_missed_is_taken() {
+        let hurried = FitOptions {
+            start: Some(Parameters::new(1.0, 1.0, 1.0).unwrap()),
+            max_iterations: 1,
+            ..options()
+        };
+        let fit = fit(&scan(truth(), 1.5), &hurried).unwrap();
+        let check = fit.global_check.unwrap();
+        assert!(check.lower_minimum_taken && check.stage2_e_percent > fit.e_percent);
+        assert!((fit.parameters.k1 / 0.2 - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn several_wavelengths_are_refused() {
+        let mut readings = scan(truth(), 1.5).readings().to_vec();
+        readings[0].wavelength_um = Some(0.5);
+        readings[1].wavelength_um = Some(0.6);
+        let several = Measurements::new("test", readings).unwrap();
+        assert_eq!(
+            fit(&several, &options()),
+            Err(FitError::SeveralWavelengths(3))
+        );
+    }
+
+    #[test]
+    fn the_refractive_index_of_the_options_goes_before_that_of_the_file() {
+        let mut scan = scan(truth(), 1.5);
+        assert_eq!(
+            fit(&scan, &FitOptions::default()),
+            Err(FitError::NoRefractiveIndex(None))
+        );
+        scan.refractive_index = Some(RefractiveIndex::Same(1.7));
+        assert_eq!(fit(&scan, &FitOptions::default()).unwrap().n, 1.7);
+        assert_eq!(fit(&scan, &options()).unwrap().n, 1.5);
+    }
+
+    #[test]
+    fn the_json_reads_back() {
+        let fit = fit(&scan(truth(), 1.5), &options()).unwrap();
+        let json = serde_json::to_string(&fit).unwrap();
+        assert!(json.contains("\"stage1_limit_deg\":60.0"));
+        let back: Fit = serde_json::from_str(&json).unwrap();
+        assert!(back == fit, "the numbers differ");
+    }
+}

@@ -1,5 +1,6 @@
 //! The weights of the readings in eq. (5).
 
+use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
@@ -66,6 +67,19 @@ pub struct Weights {
     pub g2: AngleWeight,
     /// Multiply by 1/sigma^2 of each reading.
     pub by_sigma: bool,
+}
+
+/// Which weights there are besides 1: `g1(psi), 1/sigma^2`, or nothing.
+impl fmt::Display for Weights {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let all = [
+            (!self.g1.points_deg.is_empty()).then_some("g1(psi)"),
+            (!self.g2.points_deg.is_empty()).then_some("g2(theta)"),
+            self.by_sigma.then_some("1/sigma^2"),
+        ];
+        let used: Vec<&str> = all.into_iter().flatten().collect();
+        f.write_str(&used.join(", "))
+    }
 }
 
 impl Weights {

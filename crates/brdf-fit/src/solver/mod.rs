@@ -29,6 +29,16 @@ pub enum Method {
     LevenbergMarquardt,
 }
 
+impl Method {
+    /// NM or LM, as the tables have it.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::NelderMead => "NM",
+            Self::LevenbergMarquardt => "LM",
+        }
+    }
+}
+
 impl fmt::Display for Method {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {

@@ -73,7 +73,7 @@ fn files_that_are_no_scan() {
     expect(
         format!("# quantity: btdf\n{}", rows("")),
         BAD,
-        "line 1: quantity \"btdf\" is not known",
+        "line 1: quantity: \"btdf\" is not known",
     );
     let garbage: Vec<u8> = (0..4096_u32)
         .map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8)

@@ -113,8 +113,11 @@ impl Section {
 
     /// The view angles on either side of the mirror direction at which f_r first falls to `level`.
     fn crossings(&self, level: f64) -> impl Iterator<Item = f64> {
-        let after = self.points.partition_point(|(theta, _)| *theta < -self.psi);
-        let (left, right) = self.points.split_at(after);
+        // A reading in the mirror direction itself belongs to both sides.
+        let left = &self.points[..self
+            .points
+            .partition_point(|(theta, _)| *theta <= -self.psi)];
+        let right = &self.points[self.points.partition_point(|(theta, _)| *theta < -self.psi)..];
         let falls = move |pair: &[(f64, f64)]| pair[0].1 >= level && pair[1].1 < level;
         let rises = move |pair: &[(f64, f64)]| pair[0].1 < level && pair[1].1 >= level;
         let on_the_right = right.windows(2).find(|pair| falls(pair));

@@ -7,11 +7,12 @@
 //! | `brdf_per_sr` | 1/sr | the reading, in the quantity of the header |
 //! | `wavelength_um` | um, > 0 | optional |
 //! | `phi_deg` | deg | optional, 0 where it is missing |
-//! | `sigma_per_sr` | 1/sr, > 0 | optional, in the same quantity as the reading |
+//! | `sigma_per_sr` | 1/sr, > 0 | optional, also in single rows; in the same quantity as the reading |
 //! | `n` | [1, 1e5] | optional, one value for each wavelength |
 //!
 //! Columns are found by their names, in any order; others are left out and listed. Lines that
-//! begin with `#` are comments; `# key: value` is kept as metadata. `# quantity:` may be `brdf`
+//! begin with `#` are comments; `# key: value` is kept as metadata, and a comment that names the
+//! columns is the header. `# quantity:` may be `brdf`
 //! (f_r, also where nothing is said), `brdf_cos` (f_r cos theta) or `reflectance_factor` (pi f_r)
 //! and is converted once, here. `# refractive_index: 1.5` or `0.63=1.60,0.85=1.58` gives n.
 //! A decimal comma is understood where the separator is not a comma. A byte order mark and the
@@ -23,9 +24,8 @@ use std::io::Read;
 use std::path::Path;
 
 use brdf_core::brdf::check_refractive_index;
-use csv::ByteRecord;
 
-use super::{Convention, ReadError, Side};
+use super::{Convention, ReadError, Side, fields};
 use crate::measurement::{Measurement, Measurements, Metadata};
 use crate::refractive_index::RefractiveIndex;
 
@@ -124,7 +124,9 @@ fn text_of(bytes: &[u8]) -> Result<&[u8], &'static str> {
         return Err("is in UTF-16: expected plain text or UTF-8 (save it as \"CSV UTF-8\")");
     }
     let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let is_control = |byte: &u8| *byte < 32 && !b"\t\n\r\x0c\x1a".contains(byte);
+    // The end of a text file on old systems.
+    let text = text.strip_suffix(b"\x1a").unwrap_or(text);
+    let is_control = |byte: &u8| *byte < 32 && !b"\t\n\r\x0c".contains(byte);
     if text.iter().take(8192).any(is_control) {
         return Err("is binary data: expected a table of readings as text");
     }
@@ -151,17 +153,22 @@ struct Input<'a> {
 }
 
 /// What the comments and the header line say.
-struct Preamble {
+struct Preamble<'a> {
     metadata: Metadata,
-    quantity: Quantity,
+    quantity: Option<Quantity>,
     refractive_index: Option<RefractiveIndex>,
-    /// Where the header starts in the text.
-    header_start: usize,
-    /// The number of the header's line, from 1.
-    header_line: u64,
-    separator: u8,
+    header: Header<'a>,
     /// Lines after the header: as many readings at the most.
     lines_after: usize,
+}
+
+/// The line that names the columns.
+struct Header<'a> {
+    /// Its number, from 1.
+    number: u64,
+    /// Its text, without a leading `#`.
+    line: &'a [u8],
+    separator: u8,
 }
 
 /// The quantity that the readings of a file are, by its header.
@@ -173,12 +180,14 @@ enum Quantity {
 }
 
 impl Quantity {
-    fn parse(text: &str) -> Option<Self> {
+    fn parse(text: &str) -> Result<Self, String> {
         match text {
-            "brdf" => Some(Self::Brdf),
-            "brdf_cos" => Some(Self::BrdfCos),
-            "reflectance_factor" => Some(Self::ReflectanceFactor),
-            _ => None,
+            "brdf" => Ok(Self::Brdf),
+            "brdf_cos" => Ok(Self::BrdfCos),
+            "reflectance_factor" => Ok(Self::ReflectanceFactor),
+            _ => Err(format!(
+                "\"{text}\" is not known: expected brdf, brdf_cos or reflectance_factor"
+            )),
         }
     }
 
@@ -192,15 +201,15 @@ impl Quantity {
     }
 }
 
-impl Input<'_> {
-    /// Looks at each line once: its length, the metadata of comments, and where the header is.
-    fn preamble(&self) -> Result<Preamble, ReadError> {
+impl<'a> Input<'a> {
+    /// Looks at each line once: its length, the metadata of comments, and which is the header.
+    fn preamble(&self) -> Result<Preamble<'a>, ReadError> {
         let mut metadata = Metadata::default();
-        let mut quantity = Quantity::Brdf;
+        let mut quantity = None;
         let mut refractive_index = None;
         let mut header = None;
         let mut lines_after = 0;
-        for (number, start, line) in self.lines() {
+        for (number, line) in self.lines() {
             if line.len() > MAX_LINE {
                 return Err(self.line_error(
                     number,
@@ -209,107 +218,116 @@ impl Input<'_> {
                     ),
                 ));
             }
-            if let Some(comment) = comment_of(line) {
-                let Some((key, value)) = key_and_value(&comment) else {
-                    continue;
-                };
-                match key.as_str() {
-                    "quantity" => quantity = self.quantity(number, &value)?,
-                    "refractive_index" => {
-                        let parsed = value.parse().map_err(|error| {
-                            self.line_error(number, format!("refractive_index: {error}"))
-                        })?;
-                        refractive_index = Some(parsed);
-                    }
-                    _ => {}
+            match comment_of(line) {
+                Some(comment) if header.is_none() && names_the_columns(comment) => {
+                    header = Some(Header {
+                        number,
+                        line: comment,
+                        separator: separator_of(comment),
+                    });
                 }
-                metadata.0.push((key, value));
-            } else if header.is_some() {
-                lines_after += 1;
-            } else if !line.trim_ascii().is_empty() && !line.starts_with(b"sep=") {
-                header = Some((number, start, separator_of(line)));
+                Some(comment) => {
+                    let comment = String::from_utf8_lossy(comment);
+                    let Some((key, value)) = key_and_value(&comment) else {
+                        continue;
+                    };
+                    let because = |message| self.line_error(number, message);
+                    match key.as_str() {
+                        "quantity" => set_once(&mut quantity, Quantity::parse(&value), &key)
+                            .map_err(because)?,
+                        "refractive_index" => {
+                            set_once(&mut refractive_index, value.parse(), &key).map_err(because)?
+                        }
+                        _ => {}
+                    }
+                    metadata.0.push((key, value));
+                }
+                None if header.is_some() => lines_after += 1,
+                None if line.trim_ascii().is_empty() || line.starts_with(b"sep=") => {}
+                None => {
+                    header = Some(Header {
+                        number,
+                        line,
+                        separator: separator_of(line),
+                    })
+                }
             }
         }
-        let (header_line, header_start, separator) = header.ok_or_else(|| {
-            file_error(
-                self.path,
-                "has no header: expected a line with psi_deg, theta_deg and brdf_per_sr",
-            )
+        let header = header.ok_or_else(|| {
+            let message = "has no header: expected a line with psi_deg, theta_deg and brdf_per_sr";
+            file_error(self.path, message)
         })?;
         Ok(Preamble {
             metadata,
             quantity,
             refractive_index,
-            header_start,
-            header_line,
-            separator,
+            header,
             lines_after,
         })
     }
 
-    /// Number, start and text of each line; a line ends with LF, CR or CR LF.
-    fn lines(&self) -> impl Iterator<Item = (u64, usize, &[u8])> {
-        let mut start = 0;
+    /// Number and text of each line; a line ends with LF, CR or CR LF.
+    fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + use<'a> {
+        let mut rest = self.text;
         let mut number = 0;
         std::iter::from_fn(move || {
-            if start >= self.text.len() {
+            if rest.is_empty() {
                 return None;
             }
-            let rest = &self.text[start..];
             let end = rest
                 .iter()
                 .position(|&byte| is_line_end(byte))
                 .unwrap_or(rest.len());
-            let line_start = start;
-            let ends_in_crlf = rest[end..].starts_with(b"\r\n");
-            start += end + if ends_in_crlf { 2 } else { 1 };
+            let (line, behind) = rest.split_at(end);
+            let ending = if behind.starts_with(b"\r\n") {
+                2
+            } else {
+                behind.len().min(1)
+            };
+            rest = &behind[ending..];
             number += 1;
-            Some((number, line_start, &rest[..end]))
-        })
-    }
-
-    fn quantity(&self, line: u64, value: &str) -> Result<Quantity, ReadError> {
-        Quantity::parse(value).ok_or_else(|| {
-            self.line_error(
-                line,
-                format!("quantity \"{value}\" is not known: expected brdf, brdf_cos or reflectance_factor"),
-            )
+            Some((number, line))
         })
     }
 
     fn measurements(
         &self,
-        preamble: Preamble,
+        preamble: Preamble<'a>,
         convention: Convention,
     ) -> Result<Measurements, ReadError> {
-        let mut records = csv::ReaderBuilder::new()
-            .delimiter(preamble.separator)
-            .comment(Some(b'#'))
-            .has_headers(false)
-            .flexible(true)
-            .from_reader(&self.text[preamble.header_start..]);
-        let mut record = ByteRecord::new();
-        let not_text = |error: csv::Error| file_error(self.path, error.to_string());
-        records.read_byte_record(&mut record).map_err(not_text)?;
-        let columns = Columns::find(&record)
-            .map_err(|message| self.line_error(preamble.header_line, message))?;
+        let Header {
+            number: header_number,
+            line: header_line,
+            separator,
+        } = preamble.header;
+        let mut fields = Vec::new();
+        let columns = fields::split(header_line, separator, &mut fields)
+            .map_err(str::to_owned)
+            .and_then(|()| Columns::find(&fields))
+            .map_err(|message| self.line_error(header_number, message))?;
+        let quantity = preamble.quantity.unwrap_or(Quantity::Brdf);
         let mut readings = Vec::with_capacity(preamble.lines_after);
         let mut indices = IndexColumn::default();
-        while records.read_byte_record(&mut record).map_err(not_text)? {
-            if record.iter().all(|field| field.trim_ascii().is_empty())
-                || record.get(0).is_some_and(|field| field.starts_with(b"#"))
-            {
+        for (number, line) in self
+            .lines()
+            .skip_while(|(number, _)| *number <= header_number)
+        {
+            if comment_of(line).is_some() {
                 continue;
             }
-            let line = record.position().map_or(0, csv::Position::line) + preamble.header_line - 1;
+            fields::split(line, separator, &mut fields)
+                .map_err(|message| self.line_error(number, message.to_owned()))?;
+            if fields.iter().all(|field| field.trim_ascii().is_empty()) {
+                continue;
+            }
             let row = Row {
                 input: self,
-                line,
-                record: &record,
-                decimal_comma: preamble.separator != b',',
+                line: number,
+                fields: &fields,
+                decimal_comma: separator != b',',
             };
             row.check_length(columns.count)?;
-            let reading = row.reading(&columns, preamble.quantity, convention)?;
+            let reading = row.reading(&columns, quantity, convention)?;
             if let Some(column) = columns.n {
                 indices.add(&row, column, reading.wavelength_um)?;
             }
@@ -317,7 +335,7 @@ impl Input<'_> {
         }
         if readings.is_empty() {
             let message = "no readings follow the header".to_owned();
-            return Err(self.line_error(preamble.header_line, message));
+            return Err(self.line_error(header_number, message));
         }
         Ok(Measurements {
             source: self.path.display().to_string(),
@@ -338,16 +356,20 @@ impl Input<'_> {
 }
 
 /// The text of a comment line, also of one that a spreadsheet has put into quotes.
-fn comment_of(line: &[u8]) -> Option<String> {
-    let comment = line
-        .strip_prefix(b"#")
-        .or_else(|| line.strip_prefix(b"\"#"))?;
-    Some(String::from_utf8_lossy(comment).into_owned())
+fn comment_of(line: &[u8]) -> Option<&[u8]> {
+    line.strip_prefix(b"#")
+        .or_else(|| line.strip_prefix(b"\"#"))
+}
+
+/// Whether a comment is a header behind a `#`, as some programs write it.
+fn names_the_columns(comment: &[u8]) -> bool {
+    let comment = String::from_utf8_lossy(comment).to_lowercase();
+    [PSI, THETA, BRDF].iter().all(|name| comment.contains(name))
 }
 
 /// `key: value` of a comment; separators that a spreadsheet has put behind it are left out.
 fn key_and_value(comment: &str) -> Option<(String, String)> {
-    let (key, value) = comment.split_once(':')?;
+    let (key, value) = comment.split_once([':', '='])?;
     let key = key.trim().to_lowercase();
     let value = value
         .trim()
@@ -357,14 +379,40 @@ fn key_and_value(comment: &str) -> Option<(String, String)> {
     is_word.then(|| (key, value.to_owned()))
 }
 
-/// The most frequent of the separators in the header line.
+/// Takes over a value of the metadata that the readings depend on: a second one must be the same.
+fn set_once<T: PartialEq>(
+    slot: &mut Option<T>,
+    value: Result<T, String>,
+    key: &str,
+) -> Result<(), String> {
+    let value = value.map_err(|error| format!("{key}: {error}"))?;
+    if slot.as_ref().is_some_and(|before| *before != value) {
+        return Err(format!("{key} stands there twice, with different values"));
+    }
+    *slot = Some(value);
+    Ok(())
+}
+
+/// The separator between the known columns: that which makes the most of them, a comma of equals.
 fn separator_of(header: &[u8]) -> u8 {
-    let count = |separator: u8| header.iter().filter(|&&byte| byte == separator).count();
-    // Of equals the last one is taken: a comma.
-    *b"\t;,"
-        .iter()
-        .max_by_key(|&&separator| count(separator))
-        .unwrap_or(&b',')
+    let known = |separator: u8| {
+        let fields = header.split(move |&byte| byte == separator);
+        fields
+            .filter(|field| KNOWN.contains(&column_name(field).as_str()))
+            .count()
+    };
+    let separators = *b"\t;,";
+    separators
+        .into_iter()
+        .max_by_key(|&separator| known(separator))
+        .unwrap_or(b',')
+}
+
+/// The name of a column as it stands in the header.
+fn column_name(field: &[u8]) -> String {
+    let name = String::from_utf8_lossy(field);
+    name.trim_matches(|c: char| c.is_ascii_whitespace() || c == '"')
+        .to_lowercase()
 }
 
 /// Where each quantity stands in a row.
@@ -387,19 +435,14 @@ const PHI: &str = "phi_deg";
 const BRDF: &str = "brdf_per_sr";
 const SIGMA: &str = "sigma_per_sr";
 const INDEX: &str = "n";
+const KNOWN: [&str; 7] = [WAVELENGTH, PSI, THETA, PHI, BRDF, SIGMA, INDEX];
 
 impl Columns {
-    fn find(header: &ByteRecord) -> Result<Self, String> {
-        let names: Vec<String> = header
-            .iter()
-            .map(|field| String::from_utf8_lossy(field.trim_ascii()).to_lowercase())
-            .collect();
-        let known = [WAVELENGTH, PSI, THETA, PHI, BRDF, SIGMA, INDEX];
-        if let Some(twice) = known
-            .iter()
-            .find(|k| names.iter().filter(|n| n == *k).count() > 1)
-        {
-            return Err(format!("column {twice} stands there twice"));
+    fn find(header: &[&[u8]]) -> Result<Self, String> {
+        let names: Vec<String> = header.iter().map(|field| column_name(field)).collect();
+        let twice = |name: &&&str| names.iter().filter(|other| other == *name).count() > 1;
+        if let Some(name) = KNOWN.iter().find(twice) {
+            return Err(format!("column {name} stands there twice"));
         }
         let position = |name: &str| names.iter().position(|n| n == name);
         let missing: Vec<&str> = [PSI, THETA, BRDF]
@@ -411,7 +454,7 @@ impl Columns {
             return Err(format!(
                 "missing column {}: expected a header with psi_deg, theta_deg and brdf_per_sr, found \"{}\"",
                 missing.join(" and "),
-                shown(names.join("\", \"").as_bytes()),
+                shown(names.join(", ").as_bytes()),
             ));
         };
         Ok(Self {
@@ -425,7 +468,7 @@ impl Columns {
             n: position(INDEX),
             ignored: names
                 .iter()
-                .filter(|name| !name.is_empty() && !known.contains(&name.as_str()))
+                .filter(|name| !name.is_empty() && !KNOWN.contains(&name.as_str()))
                 .cloned()
                 .collect(),
         })
@@ -449,19 +492,19 @@ fn shown(field: &[u8]) -> String {
 struct Row<'a> {
     input: &'a Input<'a>,
     line: u64,
-    record: &'a ByteRecord,
+    fields: &'a [&'a [u8]],
     decimal_comma: bool,
 }
 
 impl Row<'_> {
     fn check_length(&self, expected: usize) -> Result<(), ReadError> {
         let surplus = self
-            .record
+            .fields
             .iter()
             .skip(expected)
             .any(|field| !field.trim_ascii().is_empty());
         if surplus {
-            let found = self.record.len();
+            let found = self.fields.len();
             let message = format!("{found} fields: expected {expected}, as in the header");
             return Err(self.input.line_error(self.line, message));
         }
@@ -500,7 +543,9 @@ impl Row<'_> {
         )?;
         let phi_deg = optional(columns.phi, PHI, "expected degrees", |_| true)?.unwrap_or(0.0);
         let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", |_| true)?;
-        let sigma = optional(columns.sigma, SIGMA, "expected 1/sr above 0", positive)?;
+        // A reading may have no standard deviation although others have one.
+        let sigma = columns.sigma.filter(|&column| !self.is_blank(column));
+        let sigma = optional(sigma, SIGMA, "expected 1/sr above 0", positive)?;
 
         let theta = match convention.theta_positive {
             Side::Source => theta_deg,
@@ -523,6 +568,12 @@ impl Row<'_> {
         })
     }
 
+    fn is_blank(&self, column: usize) -> bool {
+        self.fields
+            .get(column)
+            .is_none_or(|field| field.trim_ascii().is_empty())
+    }
+
     /// The number in a column, if `accepts` holds for it.
     fn value(
         &self,
@@ -531,7 +582,7 @@ impl Row<'_> {
         expected: &str,
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
-        let field = self.record.get(column).unwrap_or_default();
+        let field = self.fields.get(column).copied().unwrap_or_default();
         let problem = match parse_number(field, self.decimal_comma) {
             Some(value) if !value.is_finite() => "is not a finite number",
             Some(value) if accepts(value) => return Ok(value),
@@ -752,7 +803,7 @@ mod tests {
         assert!(error("# only: comments\n").contains("no header"));
         assert!(error(HEADER).contains("line 1: no readings follow the header"));
         assert!(error("psi_deg,theta_deg\n1,2\n").contains("missing column brdf_per_sr"));
-        assert!(error("a;b\n1;2\n").contains("found \"a\\\", \\\"b\""));
+        assert!(error("a;b\n1;2\n").contains("found \"a;b\""));
         assert!(
             error("psi_deg,psi_deg,theta_deg,brdf_per_sr\n").contains("psi_deg stands there twice")
         );
@@ -760,7 +811,7 @@ mod tests {
         assert!(error(b"\xff\xfep\0").contains("UTF-16"));
         assert!(
             error(format!("# quantity: btdf\n{HEADER}1,2,3\n"))
-                .contains("line 1: quantity \"btdf\"")
+                .contains("line 1: quantity: \"btdf\"")
         );
         assert!(error(format!("# refractive_index: 0.5\n{HEADER}1,2,3\n")).contains("n = 0.5"));
     }
@@ -778,8 +829,64 @@ mod tests {
     }
 
     #[test]
-    fn a_stray_quote_is_an_error_and_swallows_nothing_silently() {
+    fn a_stray_quote_is_an_error_of_its_line_in_any_column() {
         let message = error(format!("{HEADER}1,2,\"3\n4,5,6\n"));
-        assert!(message.contains("line 2, column brdf_per_sr"), "{message}");
+        assert!(
+            message.contains("line 2: a quote is not closed"),
+            "{message}"
+        );
+        let text = "psi_deg,theta_deg,brdf_per_sr,note\n1,2,3,a\n1,2,3,\"5 inch\n1,2,3,x\"\n";
+        assert!(error(text).contains("line 3: a quote is not closed"));
+    }
+
+    #[test]
+    fn comments_between_rows_swallow_nothing_whatever_the_line_ends() {
+        for end in ["\n", "\r", "\r\n"] {
+            let text = [
+                "# a: b",
+                "psi_deg,theta_deg,brdf_per_sr",
+                "1,2,3",
+                "# c",
+                "",
+                "4,5,6",
+                "7,8,9",
+            ];
+            assert_eq!(scan(&text.join(end)).readings().len(), 3, "{end:?}");
+            let bad = [text.as_slice(), &["x,8,9"]].concat().join(end);
+            assert!(error(bad).contains("line 8, column psi_deg"), "{end:?}");
+        }
+    }
+
+    #[test]
+    fn a_header_behind_a_comment_sign_is_a_header() {
+        let scan = scan("# psi_deg,theta_deg,brdf_per_sr\n1,2,3\n4,5,6\n");
+        assert_eq!(scan.readings().len(), 2);
+    }
+
+    #[test]
+    fn the_separator_is_the_one_that_makes_columns() {
+        let scan = scan("psi_deg;theta_deg;brdf_per_sr;\"note, a, b, c, d\"\n1;2;3;x\n");
+        assert_eq!(scan.ignored_columns, ["note, a, b, c, d"]);
+    }
+
+    #[test]
+    fn contradictions_of_the_header_are_errors() {
+        let with = |comments: &str| error(format!("{comments}\n{HEADER}1,2,3\n"));
+        let twice = with("# quantity: brdf_cos\n# quantity: brdf");
+        assert!(
+            twice.contains("line 2: quantity stands there twice"),
+            "{twice}"
+        );
+        assert!(with("# quantity = btdf").contains("quantity: \"btdf\" is not known"));
+        let text = format!("# quantity = brdf_cos\n{HEADER}1,60,0.5\n");
+        assert!((scan(&text).readings()[0].brdf - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_missing_standard_deviation_is_none() {
+        let scan =
+            scan("psi_deg,theta_deg,brdf_per_sr,sigma_per_sr\n1,2,3,0.1\n1,2,3,\n1,2,3\n\u{1a}");
+        let sigmas: Vec<_> = scan.readings().iter().map(|r| r.sigma).collect();
+        assert_eq!(sigmas, [Some(0.1), None, None]);
     }
 }

@@ -1,6 +1,7 @@
 //! Readers, one file a format.
 
 pub mod csv;
+mod fields;
 
 use std::path::PathBuf;
 

@@ -31,23 +31,54 @@ const MAX_HALVINGS: u32 = 40;
 /// The integral of a non-negative function over the panels between ascending `breaks`.
 ///
 /// A panel is halved until the Gauss and Kronrod estimates differ by less than `tolerance` times
-/// the whole integral. The function should be smooth between the breaks; elsewhere it costs more.
-pub(crate) fn integrate(f: &impl Fn(f64) -> f64, breaks: &[f64], tolerance: f64) -> f64 {
-    let panels = breaks.windows(2).map(|panel| (panel[0], panel[1]));
-    let scale: f64 = panels.clone().map(|(a, b)| rule(f, a, b).0).sum();
+/// the first estimate of the whole integral; the Kronrod estimate, which is returned, is far better
+/// than that. The function should be smooth between the breaks; elsewhere it costs more.
+pub(crate) fn integrate<const N: usize>(
+    f: &impl Fn(f64) -> f64,
+    breaks: [f64; N],
+    tolerance: f64,
+) -> f64 {
+    let mut panels = [Panel::default(); N];
+    for (panel, ends) in panels.iter_mut().zip(breaks.windows(2)) {
+        if ends[0] < ends[1] {
+            *panel = Panel::new(f, ends[0], ends[1]);
+        }
+    }
+    let allowed = tolerance * panels.iter().map(|panel| panel.estimate).sum::<f64>();
     panels
-        .map(|(a, b)| refine(f, a, b, tolerance * scale, MAX_HALVINGS))
+        .iter()
+        .map(|panel| panel.refined(f, allowed, MAX_HALVINGS))
         .sum()
 }
 
-fn refine(f: &impl Fn(f64) -> f64, a: f64, b: f64, allowed: f64, halvings: u32) -> f64 {
-    let (estimate, error) = rule(f, a, b);
-    if error <= allowed || halvings == 0 {
-        return estimate;
+/// A piece of the range, with its estimate and the distance between the two rules.
+#[derive(Clone, Copy, Default)]
+struct Panel {
+    from: f64,
+    to: f64,
+    estimate: f64,
+    error: f64,
+}
+
+impl Panel {
+    fn new(f: &impl Fn(f64) -> f64, from: f64, to: f64) -> Self {
+        let (estimate, error) = rule(f, from, to);
+        Self {
+            from,
+            to,
+            estimate,
+            error,
+        }
     }
-    let middle = 0.5 * (a + b);
-    refine(f, a, middle, 0.5 * allowed, halvings - 1)
-        + refine(f, middle, b, 0.5 * allowed, halvings - 1)
+
+    fn refined(&self, f: &impl Fn(f64) -> f64, allowed: f64, halvings: u32) -> f64 {
+        if self.error <= allowed || halvings == 0 {
+            return self.estimate;
+        }
+        let middle = 0.5 * (self.from + self.to);
+        let half = |from, to| Self::new(f, from, to).refined(f, 0.5 * allowed, halvings - 1);
+        half(self.from, middle) + half(middle, self.to)
+    }
 }
 
 /// The Kronrod estimate and its distance to the Gauss estimate.
@@ -80,14 +111,10 @@ mod tests {
 
     #[test]
     fn kinks_and_peaks_meet_the_tolerance() {
-        let kink = integrate(&|x: f64| (x - 0.3).abs(), &[0.0, 1.0], 1e-10);
+        let kink = integrate(&|x: f64| (x - 0.3).abs(), [0.0, 1.0], 1e-10);
         assert!((kink - 0.29).abs() < 1e-10);
         let width = 1e-4;
-        let peak = integrate(
-            &|x: f64| width / (x * x + width * width),
-            &[0.0, 1.0],
-            1e-10,
-        );
+        let peak = integrate(&|x: f64| width / (x * x + width * width), [0.0, 1.0], 1e-10);
         assert!((peak - (1.0 / width).atan()).abs() < 1e-9);
     }
 }

@@ -1,5 +1,6 @@
 //! Readings of a goniometer, validated and in the model's convention.
 
+use std::cmp::Ordering;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use brdf_core::{Geometry, GeometryError};
@@ -153,12 +154,13 @@ impl Measurements {
     pub fn wavelengths(&self) -> Vec<Option<f64>> {
         let mut all: Vec<Option<f64>> = Vec::new();
         for reading in &self.readings {
-            // Files keep a wavelength together: looking at the last one first makes this linear.
-            if all.last() != Some(&reading.wavelength_um) && !all.contains(&reading.wavelength_um) {
+            // Files keep a wavelength together: most readings repeat the last one.
+            if all.last() != Some(&reading.wavelength_um) {
                 all.push(reading.wavelength_um);
             }
         }
-        all.sort_by(|a, b| a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0)));
+        all.sort_by(by_value);
+        all.dedup();
         all
     }
 
@@ -168,16 +170,14 @@ impl Measurements {
         if wavelengths.len() <= 1 {
             return vec![self];
         }
-        let of = |wavelength: Option<f64>| Self {
-            readings: self
-                .readings
-                .iter()
-                .filter(|reading| reading.wavelength_um == wavelength)
-                .copied()
-                .collect(),
-            ..self.without_readings()
-        };
-        wavelengths.into_iter().map(of).collect()
+        let mut split = vec![self.without_readings(); wavelengths.len()];
+        for reading in self.readings {
+            let of = |wavelength: &Option<f64>| by_value(wavelength, &reading.wavelength_um);
+            if let Ok(i) = wavelengths.binary_search_by(of) {
+                split[i].readings.push(reading);
+            }
+        }
+        split
     }
 
     /// The incidences in ascending order, each with its readings. Angles that differ by less than
@@ -208,6 +208,14 @@ impl Measurements {
             readings: Vec::new(),
         }
     }
+}
+
+#[expect(
+    clippy::ref_option,
+    reason = "the form that sorting and searching ask for"
+)]
+fn by_value(a: &Option<f64>, b: &Option<f64>) -> Ordering {
+    a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0))
 }
 
 #[cfg(test)]

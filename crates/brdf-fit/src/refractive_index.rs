@@ -51,8 +51,21 @@ impl FromStr for RefractiveIndex {
                     .ok_or_else(|| format!("\"{entry}\": expected WAVELENGTH=INDEX"))?;
                 Ok((parse_wavelength(wavelength)?, parse_index(n)?))
             })
-            .collect::<Result<_, String>>()
+            .collect::<Result<Vec<(f64, f64)>, String>>()
+            .and_then(without_contradiction)
             .map(Self::ByWavelength)
+    }
+}
+
+fn without_contradiction(list: Vec<(f64, f64)>) -> Result<Vec<(f64, f64)>, String> {
+    let contradicts = |(i, (wavelength, n)): &(usize, &(f64, f64))| {
+        list[..*i]
+            .iter()
+            .any(|(other, m)| other == wavelength && m != n)
+    };
+    match list.iter().enumerate().find(contradicts) {
+        Some((_, (wavelength, _))) => Err(format!("two indices for {wavelength} um")),
+        None => Ok(list),
     }
 }
 
@@ -102,5 +115,6 @@ mod tests {
         assert!(message("0.6=1.5,2").contains("\"2\""));
         assert!(message("-0.6=1.5").contains("\"-0.6\""));
         assert!(message("0.6=1.5,").contains("\"\""));
+        assert!(message("0.6=1.5,0.6=1.6").contains("two indices for 0.6 um"));
     }
 }

@@ -8,7 +8,7 @@ use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::{Measurements, Metadata};
-use crate::solver::Ending;
+use crate::solver::{Ending, K1_RANGE};
 use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, OwnAndAll, Stage, fit};
 use crate::warning::{Warning, warnings};
 use crate::words::{counted, in_degrees};
@@ -327,12 +327,16 @@ fn stage_table(fit: &Fit) -> String {
     if !weights.is_empty() {
         let _ = writeln!(text, "  readings weighted by {weights}");
     }
-    let on_bound: Vec<&str> = [(fit.parameters.k2, "k2"), (fit.parameters.kd, "kD")]
-        .into_iter()
-        .filter_map(|(value, name)| (value == 0.0).then_some(name))
-        .collect();
-    if !on_bound.is_empty() {
-        let _ = writeln!(text, "  on its bound: {} = 0", on_bound.join(" = "));
+    let Parameters { k2, kd, k1 } = fit.parameters;
+    for (on_bound, name) in [
+        (k2 == 0.0, "k2 = 0"),
+        (kd == 0.0, "kD = 0"),
+        (k1 == K1_RANGE.0, "k1 = 1e-6, the smallest that is searched"),
+        (k1 == K1_RANGE.1, "k1 = 1e3, the largest that is searched"),
+    ] {
+        if on_bound {
+            let _ = writeln!(text, "  on its bound: {name}");
+        }
     }
     text
 }

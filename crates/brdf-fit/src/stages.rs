@@ -24,6 +24,9 @@ pub const FEWEST_READINGS: usize = 4;
 /// of summing the same minimum differ.
 const LOWER: f64 = 1e-9;
 
+/// E below which it is nothing but rounding, as a fraction.
+const ROUNDING: f64 = 1e-20;
+
 /// Settings of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitOptions {
@@ -76,6 +79,8 @@ pub struct Fit {
     pub options: FitOptions,
     /// How many readings were fitted.
     pub readings: usize,
+    /// How many of them have a weight of zero, and so no say.
+    pub weightless: usize,
     /// The fitted parameters: those of stage 2, or of the lower minimum that the check found.
     pub parameters: Parameters,
     /// E over all readings, in percent.
@@ -135,7 +140,7 @@ pub struct IncidenceError {
     pub psi_deg: f64,
     /// How many readings there are.
     pub readings: usize,
-    /// E in percent; `None` where all its readings are zero.
+    /// E in percent; `None` where all its readings are zero, or weigh nothing.
     pub e_percent: Option<f64>,
 }
 
@@ -218,6 +223,10 @@ pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, Fit
         .ok_or(FitError::NoRefractiveIndex(wavelength_um))?;
 
     let all = Criterion::new(readings, n, &options.weights)?;
+    let weightless = all.weightless();
+    if readings.len() - weightless < FEWEST_READINGS {
+        return Err(FitError::TooFewReadings(readings.len() - weightless));
+    }
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
     let own = first.criterion.as_ref().unwrap_or(&all);
@@ -250,6 +259,7 @@ pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, Fit
         n,
         options: options.clone(),
         readings: readings.len(),
+        weightless,
         parameters,
         e_percent: 100.0 * all.error(&parameters),
         incidences: errors_by_incidence(&all, &incidences, &parameters),
@@ -370,7 +380,7 @@ fn check_globally(
     let lowest = profile.global_minimum(all).parameters;
     let mut parameters = stage2.parameters;
     let is_lower = |candidate: &Parameters, best: &Parameters| {
-        all.error(candidate) < all.error(best) * (1.0 - LOWER)
+        all.error(candidate) < all.error(best) * (1.0 - LOWER) - ROUNDING
     };
     let lower_minimum_taken = is_lower(&lowest, &parameters);
     if lower_minimum_taken {
@@ -487,6 +497,41 @@ mod tests {
         let check = fit.global_check.unwrap();
         assert!(check.lower_minimum_taken && check.stage2_e_percent > fit.e_percent);
         assert!((fit.parameters.k1 / 0.2 - 1.0).abs() < 1e-5);
+    }
+
+    #[test]
+    fn the_size_of_the_readings_does_not_matter() {
+        for size in [1e-20, 1e20] {
+            let mut readings = scan(truth(), 1.5).readings().to_vec();
+            for (i, reading) in readings.iter_mut().enumerate() {
+                reading.brdf *= size * (1.0 + 0.1 * (i as f64).sin());
+            }
+            let scan = Measurements::new("test", readings).unwrap();
+            let fit = fit(&scan, &options()).unwrap();
+            assert!((fit.parameters.k1 / 0.2 - 1.0).abs() < 0.1);
+            assert!((fit.parameters.k2 / (0.3 * size) - 1.0).abs() < 0.1);
+            assert_eq!(
+                crate::warning::warnings(&scan, &fit).len(),
+                usize::from(size > 1.0)
+            );
+        }
+    }
+
+    #[test]
+    fn readings_that_weigh_nothing_are_counted_and_do_not_count() {
+        let mut options = options();
+        options.weights.g1 = "0=1,5=0".parse().unwrap();
+        let found = fit(&scan(truth(), 1.5), &options).unwrap();
+        assert_eq!(
+            found.readings - found.weightless,
+            found.incidences[0].readings
+        );
+        options.weights.g1 = "0=0,1=0".parse().unwrap();
+        let scan = scan_with(|r| r.psi > 0.1);
+        assert_eq!(
+            fit(&scan, &options),
+            Err(FitError::Criterion(CriterionError::AllZero))
+        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a user should know before trusting a fit.
 
+use std::f64::consts::{PI, TAU};
 use std::fmt;
 
 use brdf_core::{Parameters, ThreeParameterBrdf};
@@ -21,10 +22,13 @@ const FEW_INCIDENCES: usize = 3;
 
 /// A reading is near the mirror direction when its facet is tilted by no more than this, in
 /// radians: 2.5 deg, or 5 deg of view angle in the plane of incidence.
-const NEAR_MIRROR_TILT: f64 = 2.5 * std::f64::consts::PI / 180.0;
+const NEAR_MIRROR_TILT: f64 = 2.5 * PI / 180.0;
 
 /// Quantile of chi-square for one parameter at 95 %.
 const CHI_SQUARE_95: f64 = 3.841;
+
+/// Below this E a scan is described well enough as it is.
+const FITS_WELL_PERCENT: f64 = 1.0;
 
 /// The other side as positive describes the readings better when it lowers E by this factor.
 const TURNED_GAIN: f64 = 0.5;
@@ -71,6 +75,11 @@ pub enum Warning {
     },
     /// Negative readings, which are noise; they are kept.
     NegativeReadings {
+        /// How many.
+        count: usize,
+    },
+    /// Readings with a weight of zero, which have no say.
+    WeightlessReadings {
         /// How many.
         count: usize,
     },
@@ -123,7 +132,18 @@ impl fmt::Display for Warning {
                 write!(f, "{count}: little is known of other incidences")
             }
             Self::NegativeReadings { count } => {
-                write!(f, "{} below zero (noise), kept", counted(*count, "reading"))
+                write!(
+                    f,
+                    "{} below zero, kept (noise, or a background too large?)",
+                    counted(*count, "reading")
+                )
+            }
+            Self::WeightlessReadings { count } => {
+                write!(
+                    f,
+                    "{} with a weight of zero, without any say",
+                    counted(*count, "reading")
+                )
             }
             Self::RepeatedReadings { count } => {
                 write!(
@@ -162,7 +182,7 @@ pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
     }
     warnings.extend(reflectance_above_one(fit));
     warnings.extend(iteration_limits(fit));
-    warnings.extend(about_readings(readings, fit.incidences.len()));
+    warnings.extend(about_readings(readings, fit));
     warnings
 }
 
@@ -176,8 +196,9 @@ fn turned_round(readings: &[Measurement], fit: &Fit) -> Option<Warning> {
         .collect();
     let criterion = Criterion::new(&turned, fit.n, &fit.options.weights).ok()?;
     let lowest = crate::profile::Profile::search(&criterion).global_minimum(&criterion);
-    let e_percent = 100.0 * lowest.error;
-    (e_percent < TURNED_GAIN * fit.e_percent).then_some(Warning::TurnedRound { e_percent })
+    let e_percent = 100.0 * criterion.error(&lowest.parameters);
+    (fit.e_percent > FITS_WELL_PERCENT && e_percent < TURNED_GAIN * fit.e_percent)
+        .then_some(Warning::TurnedRound { e_percent })
 }
 
 fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
@@ -193,7 +214,14 @@ fn iteration_limits(fit: &Fit) -> impl Iterator<Item = Warning> {
     })
 }
 
-fn about_readings(readings: &[Measurement], incidences: usize) -> impl Iterator<Item = Warning> {
+fn about_readings(readings: &[Measurement], fit: &Fit) -> impl Iterator<Item = Warning> {
+    // Those without an E weigh nothing, or are zero.
+    let incidences = fit
+        .incidences
+        .iter()
+        .filter(|i| i.e_percent.is_some())
+        .count();
+    let weightless = fit.weightless;
     let negative = readings.iter().filter(|r| r.brdf < 0.0).count();
     let repeated = repeated_readings(readings);
     let smallest_tilt = readings
@@ -206,6 +234,7 @@ fn about_readings(readings: &[Measurement], incidences: usize) -> impl Iterator<
         (smallest_tilt > NEAR_MIRROR_TILT).then(|| Warning::NoMirrorReadings {
             smallest_tilt_deg: smallest_tilt.to_degrees(),
         }),
+        (weightless > 0).then_some(Warning::WeightlessReadings { count: weightless }),
         (negative > 0).then_some(Warning::NegativeReadings { count: negative }),
         (repeated > 0).then_some(Warning::RepeatedReadings { count: repeated }),
     ]
@@ -213,16 +242,27 @@ fn about_readings(readings: &[Measurement], incidences: usize) -> impl Iterator<
     .flatten()
 }
 
+/// Readings in the same direction as an earlier one, however their angles are written.
 fn repeated_readings(readings: &[Measurement]) -> usize {
-    // Adding zero makes one of the two zeros of a signed angle.
-    let mut angles: Vec<[f64; 3]> = readings
-        .iter()
-        .map(|r| [r.psi + 0.0, r.theta + 0.0, r.phi + 0.0])
-        .collect();
-    let total = angles.len();
-    angles.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
-    angles.dedup();
-    total - angles.len()
+    let mut directions: Vec<[i64; 3]> = readings.iter().map(direction).collect();
+    let total = directions.len();
+    directions.sort_unstable();
+    directions.dedup();
+    total - directions.len()
+}
+
+/// psi, |theta| and the azimuth in [0, 2 pi), in units of 1e-9 rad; the azimuth is 0 for a view
+/// along the normal, which has none.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "angles of a few rad are far from 2^63 units"
+)]
+fn direction(reading: &Measurement) -> [i64; 3] {
+    let units = |angle: f64| (angle * 1e9).round() as i64;
+    let turned = if reading.theta < 0.0 { PI } else { 0.0 };
+    let phi = units((reading.phi + turned).rem_euclid(TAU)) % units(TAU);
+    let (psi, theta) = (units(reading.psi), units(reading.theta.abs()));
+    [psi, theta, if theta == 0 { 0 } else { phi }]
 }
 
 /// Which parameters the data leave open, in the linear approximation for the weights and along
@@ -251,7 +291,7 @@ fn not_determined(criterion: &Criterion, fit: &Fit) -> Vec<Warning> {
 /// The interval of k1 in which E stays below its minimum times 1 + chi^2/(N - 3): where it reaches
 /// the end of the search, k1 has no limit on that side.
 fn width_not_determined(profile: &[ProfilePoint], fit: &Fit) -> Option<Warning> {
-    let degrees_of_freedom = (fit.readings - 3) as f64;
+    let degrees_of_freedom = (fit.readings - fit.weightless - 3) as f64;
     let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / degrees_of_freedom);
     let k1 = fit.parameters.k1;
     let inside = |point: &&ProfilePoint| point.error <= limit;
@@ -288,7 +328,7 @@ fn weights_not_determined(
     fit: &Fit,
 ) -> Vec<Warning> {
     let Parameters { k2, kd, .. } = fit.parameters;
-    let degrees_of_freedom = (fit.readings - 3) as f64;
+    let degrees_of_freedom = (fit.readings - fit.weightless - 3) as f64;
     let Some(inverse) = equations.matrix.try_inverse() else {
         return vec![Warning::WeightNotDetermined {
             weight: "k2 and kD".to_owned(),
@@ -418,10 +458,14 @@ mod tests {
     }
 
     #[test]
-    fn each_repetition_is_counted() {
+    fn each_repeated_direction_is_counted() {
         let mut readings = rippled(0.1, 0.1, 0.2);
-        let again = [readings[3], readings[3], readings[7]];
-        readings.extend(again);
+        // Once more as it is, and twice as the same direction in other words.
+        let theta = readings[7].theta;
+        let mut turned = [readings[3], readings[7], readings[7]];
+        (turned[1].theta, turned[1].phi) = (-theta, PI);
+        turned[2].phi = TAU;
+        readings.extend(turned);
         let all = warnings_of(readings, |_| ());
         assert!(
             all.contains(&Warning::RepeatedReadings { count: 3 }),

@@ -78,7 +78,7 @@ pub fn log_uniform(generator: &mut StdRng, from: f64, to: f64) -> f64 {
 /// One line of the independently computed optima.
 #[derive(Debug, Clone)]
 pub struct ExpectedOptimum {
-    /// The file below the shared data.
+    /// The file below the folder of the samples.
     pub file: String,
     /// The wavelength in micrometres.
     pub wavelength_um: f64,
@@ -90,10 +90,9 @@ pub struct ExpectedOptimum {
     pub up_to_60: (f64, Parameters),
 }
 
-/// The optima that an independent program found for the shared samples.
-pub fn expected_optima(shared_data: &Path) -> Vec<ExpectedOptimum> {
-    let path = shared_data.join("expected_optima.csv");
-    let mut reader = csv::Reader::from_path(path).expect("the optima are there");
+/// The optima that an independent program found, from a table of them.
+pub fn expected_optima(table: &Path) -> Vec<ExpectedOptimum> {
+    let mut reader = csv::Reader::from_path(table).expect("the optima are there");
     let rows = reader.records().map(|record| {
         let record = record.expect("a row of the optima");
         let number = |i: usize| record[i].parse::<f64>().expect("a number of the optima");

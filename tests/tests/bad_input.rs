@@ -284,6 +284,48 @@ fn output_that_cannot_be_written() {
     );
 }
 
+#[test]
+fn an_output_never_takes_the_place_of_a_scan_or_of_another_output() {
+    let (folder, path) = file(rows("30,-20,0.4"));
+    let before = fs::read(&path).unwrap();
+    let scan = path.to_str().unwrap();
+    let other = folder.path().join("out");
+    let other = other.to_str().unwrap();
+    for outputs in [
+        vec!["--json", scan],
+        vec!["--json", other, "--curves", other],
+    ] {
+        let output = run_fit([vec![scan, "--n", "1.5"], outputs].concat());
+        assert_eq!(output.status.code(), Some(BAD));
+        assert!(
+            stderr(&output).contains("expected a file of its own"),
+            "{}",
+            stderr(&output)
+        );
+    }
+    assert_eq!(fs::read(&path).unwrap(), before);
+}
+
+#[test]
+fn a_full_standard_output_does_not_keep_the_files() {
+    let (folder, path) = file(rows("30,-20,0.4"));
+    let json = folder.path().join("fit.json");
+    let full = fs::OpenOptions::new()
+        .write(true)
+        .open("/dev/full")
+        .unwrap();
+    let status = fit_command()
+        .arg(&path)
+        .args(["--n", "1.5", "--json"])
+        .arg(&json)
+        .stdout(Stdio::from(full))
+        .stderr(Stdio::null())
+        .status()
+        .unwrap();
+    assert_eq!(status.code(), Some(BAD));
+    assert!(fs::read_to_string(json).unwrap().contains("format_version"));
+}
+
 /// A file system of a few kilobytes, for as long as it is held.
 struct SmallDisk {
     folder: TempDir,

@@ -272,7 +272,7 @@ fn what_is_odd_about_the_readings_is_counted_and_kept() {
     let text = stdout(&output);
     for expected in [
         "wavelength not stated, n = 1.5, 9 readings",
-        "1 reading below zero (noise), kept",
+        "1 reading below zero, kept",
         "1 reading at the same angles as another one, all kept",
         "1 incidence angle: little is known of other incidences",
         "nothing was measured near the mirror direction",

@@ -1,8 +1,10 @@
 //! Every measured sample against the optimum that an independent program found for it.
 
+use std::path::Path;
+
 use brdf_fit::report::Report;
 use brdf_fit::{FitOptions, Method, RefractiveIndex, fit};
-use brdf_tests::{expected_optima, one_wavelength, shared_data};
+use brdf_tests::{ExpectedOptimum, expected_optima, in_workspace, one_wavelength, shared_data};
 
 /// A fit has reached the optimum when its E is within this fraction of it.
 const TOLERANCE: f64 = 1e-6;
@@ -11,11 +13,22 @@ const TOLERANCE: f64 = 1e-6;
 const AT_A_LIMIT: &str = "satellite/solar_array.csv";
 
 #[test]
-fn every_combination_of_methods_reaches_every_optimum() {
+fn every_combination_of_methods_reaches_every_optimum_of_the_projects_samples() {
+    let table = expected_optima(&in_workspace("tests/data/measured_optima.csv"));
+    assert_eq!(table.len(), 9);
+    reaches_every_optimum(&in_workspace("data/measured"), table);
+}
+
+#[test]
+fn every_combination_of_methods_reaches_every_optimum_of_the_shared_samples() {
     let Some(folder) = shared_data() else { return };
-    let expected = expected_optima(&folder);
-    assert_eq!(expected.len(), 59);
-    for row in expected {
+    let table = expected_optima(&folder.join("expected_optima.csv"));
+    assert_eq!(table.len(), 59);
+    reaches_every_optimum(&folder, table);
+}
+
+fn reaches_every_optimum(folder: &Path, table: Vec<ExpectedOptimum>) {
+    for row in table {
         let scan = one_wavelength(&folder.join(&row.file), row.wavelength_um);
         for stage1 in [Method::NelderMead, Method::LevenbergMarquardt] {
             for stage2 in [Method::NelderMead, Method::LevenbergMarquardt] {
@@ -50,7 +63,7 @@ fn a_sample_that_the_model_cannot_describe_is_said_to_be_one() {
         refractive_index: Some(RefractiveIndex::Same(1.5)),
         ..FitOptions::default()
     };
-    for row in expected_optima(&folder) {
+    for row in expected_optima(&folder.join("expected_optima.csv")) {
         let scan = one_wavelength(&folder.join(&row.file), row.wavelength_um);
         let (report, _) = Report::of(&scan, &options);
         let says_so = report

@@ -6,6 +6,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+use brdf_fit::report::Report;
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex, fit};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
@@ -105,6 +106,10 @@ fn fits(c: &mut Criterion) {
     ] {
         group.bench_function(name, |b| b.iter(|| fit(black_box(&scan), &options)));
     }
+    let all = options(Some(lm), lm, true);
+    group.bench_function("two stages LM, global check, warnings", |b| {
+        b.iter(|| Report::of(black_box(&scan), &all));
+    });
     let start = fit(&scan, &options(None, lm, false))
         .expect("a fit")
         .initial

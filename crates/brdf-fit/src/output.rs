@@ -16,20 +16,57 @@ pub struct WriteError {
 
 /// Writes a file by way of a temporary one beside it, which takes its place when it is complete.
 ///
-/// A link is followed. What is not a regular file (a pipe, a device) is written to directly.
+/// A link is followed, and a file keeps its permissions. What is not a regular file (a pipe, a
+/// device) is written to directly.
 pub fn write_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), WriteError> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let target = resolved(path);
     let result = match fs::metadata(&target) {
         Ok(metadata) if !metadata.is_file() => write_directly(&target, write),
-        _ => write_and_rename(&target, write),
+        Ok(metadata) => write_and_rename(&target, Some(metadata.permissions()), write),
+        Err(_) => write_and_rename(&target, None, write),
     };
     result.map_err(|error| WriteError {
         path: path.to_owned(),
-        error,
+        error: plain(error),
     })
+}
+
+/// The file that a path leads to over its links, also where that does not exist yet.
+pub fn resolved(path: &Path) -> PathBuf {
+    if let Ok(existing) = fs::canonicalize(path) {
+        return existing;
+    }
+    let folder = folder_of(path);
+    let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
+    match fs::read_link(path) {
+        // One link to a file that is not there; of a chain, the first link is resolved.
+        Ok(link) => folder.join(link),
+        Err(_) => path
+            .file_name()
+            .map_or_else(|| path.to_owned(), |name| folder.join(name)),
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// What the system says, without the name of a temporary file that the user does not know.
+fn plain(error: io::Error) -> io::Error {
+    let code = error.raw_os_error().or_else(|| {
+        error
+            .get_ref()?
+            .source()?
+            .downcast_ref::<io::Error>()?
+            .raw_os_error()
+    });
+    code.map_or(error, io::Error::from_raw_os_error)
 }
 
 fn write_directly(
@@ -43,12 +80,9 @@ fn write_directly(
 
 fn write_and_rename(
     target: &Path,
+    permissions: Option<fs::Permissions>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let folder = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
     let mut builder = tempfile::Builder::new();
     builder.prefix(".brdf-").suffix(".tmp");
     #[cfg(unix)]
@@ -57,11 +91,14 @@ fn write_and_rename(
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder_of(target))?;
     let mut writer = BufWriter::new(file.as_file_mut());
     write(&mut writer)?;
     writer.flush()?;
     drop(writer);
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
+    }
     file.persist(target).map_err(|error| error.error)?;
     Ok(())
 }
@@ -107,6 +144,26 @@ mod tests {
             message
                 .to_string()
                 .starts_with("/no/such/folder/x.json: cannot be written")
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_permissions_kept() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+        let folder = tempfile::tempdir().unwrap();
+        let (link, target) = (folder.path().join("link"), folder.path().join("target"));
+        symlink("target", &link).unwrap();
+        for text in ["first", "second"] {
+            write_file(&link, |w| w.write_all(text.as_bytes())).unwrap();
+            assert_eq!(fs::read_to_string(&target).unwrap(), text);
+            assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+            fs::set_permissions(&target, fs::Permissions::from_mode(0o600)).unwrap();
+        }
+        write_file(&target, |w| w.write_all(b"third")).unwrap();
+        assert_eq!(
+            fs::metadata(&target).unwrap().permissions().mode() & 0o777,
+            0o600
         );
     }
 }

@@ -4,7 +4,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use brdf_fit::output::{WriteError, write_file};
+use brdf_fit::output::{resolved, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{Document, Report, write_curves, write_parameters};
 use brdf_fit::weights::{AngleWeight, Weights};
@@ -143,6 +143,23 @@ impl Arguments {
         }
     }
 
+    /// No output takes the place of a scan or of another output.
+    fn check_outputs(&self) -> Result<(), String> {
+        let mut taken: Vec<PathBuf> = self.files.iter().map(|file| resolved(file)).collect();
+        for output in [&self.json, &self.curves].into_iter().flatten() {
+            let target = resolved(output);
+            let is_regular = !target.exists() || target.is_file();
+            if is_regular && taken.contains(&target) {
+                return Err(format!(
+                    "{}: is an input or another output of this command: expected a file of its own",
+                    output.display()
+                ));
+            }
+            taken.push(target);
+        }
+        Ok(())
+    }
+
     fn convention(&self) -> Convention {
         Convention {
             theta_positive: self.theta_positive.into(),
@@ -171,6 +188,10 @@ impl From<Outcome> for ExitCode {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Err(message) = arguments.check_outputs() {
+        complain(&message);
+        return Outcome::BadUsageOrFile.into();
+    }
     let (scans, mut outcome) = read_all(&arguments);
     let results = fit_all(&scans, &arguments.options());
     for (report, error) in &results {
@@ -187,8 +208,10 @@ fn main() -> ExitCode {
         complain(&format!("{}{wavelength}: {error}", report.file));
     }
     let reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
-    if let Err(message) = deliver(&arguments, &scans, reports) {
-        complain(&message);
+    if let Err(messages) = deliver(&arguments, &scans, reports) {
+        for message in messages {
+            complain(&message);
+        }
         outcome = Outcome::BadUsageOrFile;
     }
     outcome.into()
@@ -235,27 +258,38 @@ fn fit_all(scans: &[Measurements], options: &FitOptions) -> Vec<(Report, Option<
     results
 }
 
+/// Writes the files and prints; what fails keeps nothing else from being delivered.
 fn deliver(
     arguments: &Arguments,
     scans: &[Measurements],
     reports: Vec<Report>,
-) -> Result<(), String> {
-    print(arguments, &reports).map_err(|error| format!("standard output: {error}"))?;
-    let message = |error: WriteError| error.to_string();
+) -> Result<(), Vec<String>> {
+    let mut failed = Vec::new();
     if let Some(path) = &arguments.curves {
         let fits = scans.iter().zip(&reports);
         let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
-        write_file(path, |writer| write_curves(fits, writer)).map_err(message)?;
+        let written = write_file(path, |writer| write_curves(fits, writer));
+        failed.extend(written.err().map(|error| error.to_string()));
     }
+    let document = Document::new(reports);
     if let Some(path) = &arguments.json {
-        let document = Document::new(reports);
-        write_file(path, |writer| {
+        let written = write_file(path, |writer| {
             serde_json::to_writer_pretty(&mut *writer, &document)?;
             writer.write_all(b"\n")
-        })
-        .map_err(message)?;
+        });
+        failed.extend(written.err().map(|error| error.to_string()));
     }
-    Ok(())
+    let printed = print(arguments, &document.reports);
+    failed.extend(
+        printed
+            .err()
+            .map(|error| format!("standard output: {error}")),
+    );
+    if failed.is_empty() {
+        Ok(())
+    } else {
+        Err(failed)
+    }
 }
 
 /// Prints to standard output. A reader that has seen enough (`| head`) is no error.

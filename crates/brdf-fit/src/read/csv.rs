@@ -236,7 +236,8 @@ impl<'a> Input<'a> {
                         "quantity" => set_once(&mut quantity, Quantity::parse(&value), &key)
                             .map_err(because)?,
                         "refractive_index" => {
-                            set_once(&mut refractive_index, value.parse(), &key).map_err(because)?
+                            set_once(&mut refractive_index, value.parse(), &key)
+                                .map_err(because)?;
                         }
                         _ => {}
                     }
@@ -249,7 +250,7 @@ impl<'a> Input<'a> {
                         number,
                         line,
                         separator: separator_of(line),
-                    })
+                    });
                 }
             }
         }

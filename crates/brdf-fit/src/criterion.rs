@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use brdf_core::Parameters;
 use brdf_core::fresnel::Dielectric;
 use brdf_core::shadowing::v_groove_over_cosines;
+use brdf_core::{GeometryError, Parameters};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::measurement::Measurement;
@@ -67,6 +67,9 @@ pub enum CriterionError {
         "weights by 1/sigma^2 need the standard deviation of every reading (column sigma_per_sr)"
     )]
     NoSigma,
+    /// Angles outside the model's domain, which no [validated](Measurement::validated) reading has.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
     /// The squares of the readings, or of what they are divided by, leave the range of numbers.
     #[error("the largest weighted reading is {0:e} 1/sr: expected one between 1e-30 and 1e30 1/sr")]
     Size(f64),
@@ -78,7 +81,8 @@ pub enum CriterionError {
 impl Criterion {
     /// The criterion over the readings at the refractive index n.
     ///
-    /// The readings were [validated](Measurement::validated), n is in the model's domain.
+    /// n is in the model's domain. Errors: a weight that cannot be had, readings whose E is not
+    /// defined, and angles outside the domain.
     pub fn new(
         readings: &[Measurement],
         n: f64,
@@ -88,9 +92,7 @@ impl Criterion {
         let mut criterion = Self::with_capacity(readings.len());
         for reading in readings {
             let weight = weights.of(reading).ok_or(CriterionError::NoSigma)?;
-            let Ok(geometry) = reading.geometry() else {
-                unreachable!("readings are validated when they enter Measurements")
-            };
+            let geometry = reading.geometry()?;
             let w = weight.sqrt() * geometry.cos_theta();
             let a = w / std::f64::consts::PI;
             criterion.measured.push(w * reading.brdf);

@@ -331,8 +331,14 @@ fn stage_table(fit: &Fit) -> String {
     for (on_bound, name) in [
         (k2 == 0.0, "k2 = 0"),
         (kd == 0.0, "kD = 0"),
-        (k1 == K1_RANGE.0, "k1 = 1e-6, the smallest that is searched"),
-        (k1 == K1_RANGE.1, "k1 = 1e3, the largest that is searched"),
+        (
+            k2 > 0.0 && k1 == K1_RANGE.0,
+            "k1 = 1e-6, the smallest that is searched",
+        ),
+        (
+            k2 > 0.0 && k1 == K1_RANGE.1,
+            "k1 = 1e3, the largest that is searched",
+        ),
     ] {
         if on_bound {
             let _ = writeln!(text, "  on its bound: {name}");

@@ -343,10 +343,10 @@ fn weights_not_determined(
         .filter(|&(_, i, _, largest)| standard_error(i).is_nan() || standard_error(i) > largest)
         .map(|(name, i, value, _)| Warning::WeightNotDetermined {
             weight: name.to_owned(),
-            reason: format!(
-                "{value:.3e} has a standard error of {:.1e}",
-                standard_error(i)
-            ),
+            reason: match standard_error(i) {
+                error if error.is_nan() => "the readings do not tell it from k1".to_owned(),
+                error => format!("{value:.3e} has a standard error of {error:.1e}"),
+            },
         })
         .collect()
 }

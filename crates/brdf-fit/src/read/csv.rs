@@ -154,12 +154,34 @@ struct Input<'a> {
 
 /// What the comments and the header line say.
 struct Preamble<'a> {
-    metadata: Metadata,
-    quantity: Option<Quantity>,
-    refractive_index: Option<RefractiveIndex>,
+    said: Said,
     header: Header<'a>,
     /// Lines after the header: as many readings at the most.
     lines_after: usize,
+}
+
+/// What the comments say.
+#[derive(Default)]
+struct Said {
+    metadata: Metadata,
+    quantity: Option<Quantity>,
+    refractive_index: Option<RefractiveIndex>,
+}
+
+impl Said {
+    /// Takes over the key and value of a comment, where it has them.
+    fn add(&mut self, comment: &str) -> Result<(), String> {
+        let Some((key, value)) = key_and_value(comment) else {
+            return Ok(());
+        };
+        match key.as_str() {
+            "quantity" => set_once(&mut self.quantity, Quantity::parse(&value), &key)?,
+            "refractive_index" => set_once(&mut self.refractive_index, value.parse(), &key)?,
+            _ => {}
+        }
+        self.metadata.0.push((key, value));
+        Ok(())
+    }
 }
 
 /// The line that names the columns.
@@ -169,6 +191,16 @@ struct Header<'a> {
     /// Its text, without a leading `#`.
     line: &'a [u8],
     separator: u8,
+}
+
+impl<'a> Header<'a> {
+    fn new(number: u64, line: &'a [u8]) -> Self {
+        Self {
+            number,
+            line,
+            separator: separator_of(line),
+        }
+    }
 }
 
 /// The quantity that the readings of a file are, by its header.
@@ -202,56 +234,28 @@ impl Quantity {
 }
 
 impl<'a> Input<'a> {
-    /// Looks at each line once: its length, the metadata of comments, and which is the header.
+    /// Looks at each line once: its length, what the comments say, and which is the header.
     fn preamble(&self) -> Result<Preamble<'a>, ReadError> {
-        let mut metadata = Metadata::default();
-        let mut quantity = None;
-        let mut refractive_index = None;
+        let mut said = Said::default();
         let mut header = None;
         let mut lines_after = 0;
         for (number, line) in self.lines() {
             if line.len() > MAX_LINE {
-                return Err(self.line_error(
-                    number,
-                    format!(
-                        "the line is longer than {MAX_LINE} bytes: expected a table of readings"
-                    ),
-                ));
+                let message = format!(
+                    "the line is longer than {MAX_LINE} bytes: expected a table of readings"
+                );
+                return Err(self.line_error(number, message));
             }
             match comment_of(line) {
                 Some(comment) if header.is_none() && names_the_columns(comment) => {
-                    header = Some(Header {
-                        number,
-                        line: comment,
-                        separator: separator_of(comment),
-                    });
+                    header = Some(Header::new(number, comment));
                 }
-                Some(comment) => {
-                    let comment = String::from_utf8_lossy(comment);
-                    let Some((key, value)) = key_and_value(&comment) else {
-                        continue;
-                    };
-                    let because = |message| self.line_error(number, message);
-                    match key.as_str() {
-                        "quantity" => set_once(&mut quantity, Quantity::parse(&value), &key)
-                            .map_err(because)?,
-                        "refractive_index" => {
-                            set_once(&mut refractive_index, value.parse(), &key)
-                                .map_err(because)?;
-                        }
-                        _ => {}
-                    }
-                    metadata.0.push((key, value));
-                }
+                Some(comment) => said
+                    .add(&String::from_utf8_lossy(comment))
+                    .map_err(|message| self.line_error(number, message))?,
                 None if header.is_some() => lines_after += 1,
                 None if line.trim_ascii().is_empty() || line.starts_with(b"sep=") => {}
-                None => {
-                    header = Some(Header {
-                        number,
-                        line,
-                        separator: separator_of(line),
-                    });
-                }
+                None => header = Some(Header::new(number, line)),
             }
         }
         let header = header.ok_or_else(|| {
@@ -259,9 +263,7 @@ impl<'a> Input<'a> {
             file_error(self.path, message)
         })?;
         Ok(Preamble {
-            metadata,
-            quantity,
-            refractive_index,
+            said,
             header,
             lines_after,
         })
@@ -306,7 +308,7 @@ impl<'a> Input<'a> {
             .map_err(str::to_owned)
             .and_then(|()| Columns::find(&fields))
             .map_err(|message| self.line_error(header_number, message))?;
-        let quantity = preamble.quantity.unwrap_or(Quantity::Brdf);
+        let quantity = preamble.said.quantity.unwrap_or(Quantity::Brdf);
         let mut readings = Vec::with_capacity(preamble.lines_after);
         let mut indices = IndexColumn::default();
         for (number, line) in self
@@ -340,8 +342,10 @@ impl<'a> Input<'a> {
         }
         Ok(Measurements {
             source: self.path.display().to_string(),
-            metadata: preamble.metadata,
-            refractive_index: indices.refractive_index().or(preamble.refractive_index),
+            metadata: preamble.said.metadata,
+            refractive_index: indices
+                .refractive_index()
+                .or(preamble.said.refractive_index),
             ignored_columns: columns.ignored,
             readings,
         })

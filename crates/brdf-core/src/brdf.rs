@@ -140,16 +140,13 @@ impl ThreeParameterBrdf {
         let early = self.facet.value(geometry)
             * (self.parameters.k2 * FRAC_1_PI)
             * shadowing::v_groove_over_cosines(geometry);
-        let fresnel = self
-            .fresnel
-            .relative_with_square(geometry.cos_gamma, geometry.cos2_gamma);
-        early * fresnel + self.parameters.kd * FRAC_1_PI
+        early * self.fresnel.relative_at(geometry) + self.parameters.kd * FRAC_1_PI
     }
 
     /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
-        let mirror = self.mirror_factor(geometry) * FRAC_1_PI;
+        let mirror = mirror_factor(&self.fresnel, geometry) * FRAC_1_PI;
         [
             self.facet.value(geometry) * mirror,
             FRAC_1_PI,
@@ -183,14 +180,12 @@ impl ThreeParameterBrdf {
     pub(crate) fn fresnel(&self) -> Dielectric {
         self.fresnel
     }
+}
 
-    /// What does not depend on the parameters but on n: R0(gamma) G / (cos psi cos theta).
-    #[inline]
-    fn mirror_factor(&self, geometry: &Geometry) -> f64 {
-        self.fresnel
-            .relative_with_square(geometry.cos_gamma, geometry.cos2_gamma)
-            * shadowing::v_groove_over_cosines(geometry)
-    }
+/// What of the specular part depends on n and the geometry alone: R0(gamma) G / (cos psi cos theta).
+#[inline]
+pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
+    fresnel.relative_at(geometry) * shadowing::v_groove_over_cosines(geometry)
 }
 
 #[cfg(test)]

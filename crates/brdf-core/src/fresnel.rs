@@ -1,5 +1,7 @@
 //! The Fresnel factor of a dielectric facet.
 
+use crate::Geometry;
+
 /// Unpolarised Fresnel reflectance of a facet of refractive index n (real, relative to air).
 ///
 /// With c = cos gamma and g = sqrt((n-1)(n+1) + c^2) the Fresnel equations read
@@ -56,9 +58,15 @@ impl Dielectric {
         self.relative_with_square(cos_gamma, cos_gamma * cos_gamma)
     }
 
-    /// R0(gamma), given cos gamma and its square: the two square roots then run side by side.
+    /// R0(gamma) of a geometry, which has the square beside the cosine: the roots of both then run
+    /// side by side.
     #[inline]
-    pub(crate) fn relative_with_square(&self, cos_gamma: f64, cos2_gamma: f64) -> f64 {
+    pub fn relative_at(&self, geometry: &Geometry) -> f64 {
+        self.relative_with_square(geometry.cos_gamma, geometry.cos2_gamma)
+    }
+
+    #[inline]
+    fn relative_with_square(&self, cos_gamma: f64, cos2_gamma: f64) -> f64 {
         let Terms {
             square,
             numerator,

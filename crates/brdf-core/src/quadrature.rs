@@ -38,6 +38,7 @@ pub(crate) fn integrate<const N: usize>(
     breaks: [f64; N],
     tolerance: f64,
 ) -> f64 {
+    // One more than there are: the last stays empty, as do those between equal breaks.
     let mut panels = [Panel::default(); N];
     for (panel, ends) in panels.iter_mut().zip(breaks.windows(2)) {
         if ends[0] < ends[1] {

@@ -2,8 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use brdf_core::brdf::mirror_factor;
 use brdf_core::fresnel::Dielectric;
-use brdf_core::shadowing::v_groove_over_cosines;
 use brdf_core::{GeometryError, Parameters};
 use nalgebra::{Matrix3, Vector3};
 
@@ -97,11 +97,9 @@ impl Criterion {
             let a = w / std::f64::consts::PI;
             criterion.measured.push(w * reading.brdf);
             criterion.diffuse.push(a);
-            criterion.specular.push(
-                a * geometry.sec_alpha()
-                    * fresnel.relative(geometry.cos_gamma())
-                    * v_groove_over_cosines(&geometry),
-            );
+            criterion
+                .specular
+                .push(a * geometry.sec_alpha() * mirror_factor(&fresnel, &geometry));
             criterion.tan2_alpha.push(geometry.tan2_alpha());
         }
         criterion.normalised()

@@ -3,8 +3,8 @@
 
 use std::fmt;
 
+use brdf_core::brdf::mirror_factor;
 use brdf_core::fresnel::Dielectric;
-use brdf_core::shadowing::v_groove_over_cosines;
 use brdf_core::{Geometry, Parameters};
 use serde::{Deserialize, Serialize};
 
@@ -260,7 +260,7 @@ fn width_from_level(
     kd: f64,
 ) -> Option<f64> {
     let geometry = Geometry::in_plane(psi, theta).ok()?;
-    let mirror = fresnel.relative(geometry.cos_gamma()) * v_groove_over_cosines(&geometry);
+    let mirror = mirror_factor(fresnel, &geometry);
     let facet = (std::f64::consts::PI * level - kd) / (k2 * mirror);
     let k1_squared = facet * geometry.tan2_alpha() / (geometry.sec_alpha() - facet);
     (k1_squared > 0.0).then(|| k1_squared.sqrt().clamp(K1_RANGE.0, K1_RANGE.1))

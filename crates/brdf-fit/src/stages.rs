@@ -49,8 +49,9 @@ pub struct FitOptions {
     pub global_check: bool,
 }
 
-/// Levenberg-Marquardt in both stages: on the measured samples it reaches the same optimum as
-/// Nelder-Mead in a tenth of the evaluations.
+/// Levenberg-Marquardt in both stages: on the scans in `data/measured/` at n = 1.5 it reaches the
+/// same optima as Nelder-Mead with 15 evaluations a stage instead of 343 (the column `eval.` of
+/// `fit data/measured/*.csv --n 1.5`, with and without `--stage1 nm --stage2 nm`).
 impl Default for FitOptions {
     fn default() -> Self {
         Self {

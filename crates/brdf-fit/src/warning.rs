@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, NormalEquations};
 use crate::measurement::{Measurement, Measurements};
-use crate::profile::ProfilePoint;
+use crate::profile::{Profile, ProfilePoint};
 use crate::solver::{Ending, K1_RANGE};
 use crate::stages::Fit;
 use crate::words::counted;
@@ -187,6 +187,9 @@ pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
 }
 
 fn turned_round(readings: &[Measurement], fit: &Fit) -> Option<Warning> {
+    if fit.e_percent <= FITS_WELL_PERCENT {
+        return None;
+    }
     let turned: Vec<Measurement> = readings
         .iter()
         .map(|r| Measurement {
@@ -195,10 +198,9 @@ fn turned_round(readings: &[Measurement], fit: &Fit) -> Option<Warning> {
         })
         .collect();
     let criterion = Criterion::new(&turned, fit.n, &fit.options.weights).ok()?;
-    let lowest = crate::profile::Profile::search(&criterion).global_minimum(&criterion);
+    let lowest = Profile::search(&criterion).global_minimum(&criterion);
     let e_percent = 100.0 * criterion.error(&lowest.parameters);
-    (fit.e_percent > FITS_WELL_PERCENT && e_percent < TURNED_GAIN * fit.e_percent)
-        .then_some(Warning::TurnedRound { e_percent })
+    (e_percent < TURNED_GAIN * fit.e_percent).then_some(Warning::TurnedRound { e_percent })
 }
 
 fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
@@ -288,11 +290,15 @@ fn not_determined(criterion: &Criterion, fit: &Fit) -> Vec<Warning> {
     warnings
 }
 
+/// Readings that have a say, less the three parameters.
+fn degrees_of_freedom(fit: &Fit) -> f64 {
+    (fit.readings - fit.weightless - 3) as f64
+}
+
 /// The interval of k1 in which E stays below its minimum times 1 + chi^2/(N - 3): where it reaches
 /// the end of the search, k1 has no limit on that side.
 fn width_not_determined(profile: &[ProfilePoint], fit: &Fit) -> Option<Warning> {
-    let degrees_of_freedom = (fit.readings - fit.weightless - 3) as f64;
-    let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / degrees_of_freedom);
+    let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / degrees_of_freedom(fit));
     let k1 = fit.parameters.k1;
     let inside = |point: &&ProfilePoint| point.error <= limit;
     let below = profile
@@ -328,14 +334,14 @@ fn weights_not_determined(
     fit: &Fit,
 ) -> Vec<Warning> {
     let Parameters { k2, kd, .. } = fit.parameters;
-    let degrees_of_freedom = (fit.readings - fit.weightless - 3) as f64;
+    let variance = equations.error / degrees_of_freedom(fit);
     let Some(inverse) = equations.matrix.try_inverse() else {
         return vec![Warning::WeightNotDetermined {
             weight: "k2 and kD".to_owned(),
             reason: "the readings do not tell the specular from the diffuse part".to_owned(),
         }];
     };
-    let standard_error = |i: usize| (equations.error / degrees_of_freedom * inverse[(i, i)]).sqrt();
+    let standard_error = |i: usize| (variance * inverse[(i, i)]).sqrt();
     let level = criterion.lambertian_weight();
     // kD may well be near 0; what matters then is how much of the whole it might be.
     [("k2", 0, k2, k2), ("kD", 1, kd, kd.max(0.5 * level))]

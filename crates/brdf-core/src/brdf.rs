@@ -5,9 +5,9 @@ use std::f64::consts::FRAC_1_PI;
 use serde::{Deserialize, Serialize};
 
 use crate::Geometry;
-use crate::facet::Ellipsoid;
+use crate::facet::{Ellipsoid, FacetDistribution, P_DOMAIN};
 use crate::fresnel::Dielectric;
-use crate::shadowing;
+use crate::shadowing::{Shadowing, VGroove};
 
 /// The smallest and the largest k1 of the model's domain.
 pub const K1_DOMAIN: (f64, f64) = (1e-8, 1e8);
@@ -42,6 +42,9 @@ pub enum ParameterError {
     /// The refractive index is outside [`N_DOMAIN`].
     #[error("refractive index n = {0}: expected a number in [{min}, {max:e}]", min = N_DOMAIN.0, max = N_DOMAIN.1)]
     N(f64),
+    /// The exponent is outside [`P_DOMAIN`](crate::facet::P_DOMAIN).
+    #[error("exponent p = {0}: expected a number in [{min}, {max}]", min = P_DOMAIN.0, max = P_DOMAIN.1)]
+    P(f64),
 }
 
 /// Parameters as they stand in a file, before they are checked.
@@ -86,15 +89,28 @@ pub fn check_refractive_index(n: f64) -> Result<f64, ParameterError> {
     }
 }
 
-/// The BRDF of Li, Yan and Wu, eq. (4):
+/// A BRDF of facets and a Lambertian part, put together of a facet distribution, a shadowing
+/// function and the Fresnel factor:
 ///
 /// ```text
 /// f_r = (k2/pi) f(alpha)/f(0) R0(gamma) G / (cos psi cos theta) + kD/pi      [1/sr]
 /// ```
 ///
-/// f(alpha)/f(0) is the [facet distribution](crate::facet::Ellipsoid), R0 the [Fresnel
-/// factor](crate::fresnel::Dielectric::relative), G the [shadowing](crate::shadowing::v_groove).
-/// The function is reciprocal, to the last bit.
+/// f(alpha)/f(0) is the [facet distribution](crate::facet), R0 the [Fresnel
+/// factor](crate::fresnel::Dielectric::relative), G the [shadowing](crate::shadowing). The function
+/// is reciprocal, to the last bit. Which terms they are is known when the program is compiled, so
+/// that the choice costs nothing in a loop; [`AnyBrdf`](crate::AnyBrdf) chooses at run time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MicrofacetBrdf<F, S> {
+    k2: f64,
+    kd: f64,
+    facet: F,
+    shadowing: S,
+    fresnel: Dielectric,
+}
+
+/// The BRDF of Li, Yan and Wu, eq. (4): [the ellipsoid](Ellipsoid) of facets with the [V-groove
+/// shadowing](VGroove).
 ///
 /// ```
 /// use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
@@ -104,28 +120,42 @@ pub fn check_refractive_index(n: f64) -> Result<f64, ParameterError> {
 /// assert!((brdf.value(&mirror) - 0.6962).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ThreeParameterBrdf {
-    parameters: Parameters,
-    facet: Ellipsoid,
-    fresnel: Dielectric,
-}
+pub type ThreeParameterBrdf = MicrofacetBrdf<Ellipsoid, VGroove>;
 
 impl ThreeParameterBrdf {
     /// The model of the parameters at the refractive index n in [`N_DOMAIN`].
     pub fn new(parameters: Parameters, n: f64) -> Result<Self, ParameterError> {
+        Self::of_terms(parameters, n, Ellipsoid::new, |_| VGroove)
+    }
+}
+
+impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
+    /// The model of the parameters at the refractive index n, with the terms of the width k1.
+    pub(crate) fn of_terms(
+        parameters: Parameters,
+        n: f64,
+        facet: impl FnOnce(f64) -> F,
+        shadowing: impl FnOnce(f64) -> S,
+    ) -> Result<Self, ParameterError> {
         // The fields are public: what was changed by hand is checked again.
-        let parameters = Parameters::new(parameters.k2, parameters.kd, parameters.k1)?;
+        let Parameters { k2, kd, k1 } =
+            Parameters::new(parameters.k2, parameters.kd, parameters.k1)?;
         Ok(Self {
-            parameters,
-            facet: Ellipsoid::new(parameters.k1),
+            k2,
+            kd,
+            facet: facet(k1),
+            shadowing: shadowing(k1),
             fresnel: Dielectric::new(check_refractive_index(n)?),
         })
     }
 
     /// The parameters k2, kD and k1.
     pub fn parameters(&self) -> Parameters {
-        self.parameters
+        Parameters {
+            k2: self.k2,
+            kd: self.kd,
+            k1: self.facet.k1(),
+        }
     }
 
     /// The refractive index n.
@@ -137,21 +167,25 @@ impl ThreeParameterBrdf {
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         // The Fresnel factor comes last: its chain of roots and divisions is the longest.
-        let early = self.facet.value(geometry)
-            * (self.parameters.k2 * FRAC_1_PI)
-            * shadowing::v_groove_over_cosines(geometry);
-        early * self.fresnel.relative_at(geometry) + self.parameters.kd * FRAC_1_PI
+        let early = self.facet.relative(geometry.tan2_alpha, geometry.sec_alpha)
+            * (self.k2 * FRAC_1_PI)
+            * self.shadowing.over_cosines_at(geometry);
+        early * self.fresnel.relative_at(geometry) + self.kd * FRAC_1_PI
     }
 
     /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
-        let mirror = mirror_factor(&self.fresnel, geometry) * FRAC_1_PI;
-        [
-            self.facet.value(geometry) * mirror,
-            FRAC_1_PI,
-            self.parameters.k2 * self.facet.derivative_k1(geometry) * mirror,
-        ]
+        let (t, sec) = (geometry.tan2_alpha, geometry.sec_alpha);
+        let fresnel = self.fresnel.relative_at(geometry) * FRAC_1_PI;
+        let shadowing = self.shadowing.over_cosines_at(geometry);
+        let facet = self.facet.relative(t, sec);
+        let mut by_k1 = self.facet.derivative_k1(t, sec) * (shadowing * fresnel);
+        if S::DEPENDS_ON_WIDTH {
+            let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
+            by_k1 += facet * fresnel * self.shadowing.over_cosines_derivative_k1(psi, theta, t);
+        }
+        [facet * (shadowing * fresnel), FRAC_1_PI, self.k2 * by_k1]
     }
 
     /// The derivative of f_r by the refractive index n, in 1/sr per unit.
@@ -161,10 +195,22 @@ impl ThreeParameterBrdf {
             .fresnel
             .relative_derivative_n(geometry.cos_gamma, geometry.sin2_gamma);
         FRAC_1_PI
-            * self.parameters.k2
-            * self.facet.value(geometry)
+            * self.k2
+            * self.facet.relative(geometry.tan2_alpha, geometry.sec_alpha)
             * fresnel_slope
-            * shadowing::v_groove_over_cosines(geometry)
+            * self.shadowing.over_cosines_at(geometry)
+    }
+
+    /// The derivative of f_r by the exponent p, in 1/sr per unit; 0 for a distribution without one.
+    #[inline]
+    pub fn derivative_p(&self, geometry: &Geometry) -> f64 {
+        FRAC_1_PI
+            * self.k2
+            * self
+                .facet
+                .derivative_p(geometry.tan2_alpha, geometry.sec_alpha)
+            * self.fresnel.relative_at(geometry)
+            * self.shadowing.over_cosines_at(geometry)
     }
 
     /// Scattered radiant intensity for unit flux, eq. (3): K = f_r cos theta, in 1/sr.
@@ -173,8 +219,12 @@ impl ThreeParameterBrdf {
         self.value(geometry) * geometry.cos_theta
     }
 
-    pub(crate) fn facet(&self) -> Ellipsoid {
+    pub(crate) fn facet(&self) -> F {
         self.facet
+    }
+
+    pub(crate) fn shadowing(&self) -> S {
+        self.shadowing
     }
 
     pub(crate) fn fresnel(&self) -> Dielectric {
@@ -182,10 +232,11 @@ impl ThreeParameterBrdf {
     }
 }
 
-/// What of the specular part depends on n and the geometry alone: R0(gamma) G / (cos psi cos theta).
+/// What of the paper's specular part depends on n and the geometry alone:
+/// R0(gamma) G / (cos psi cos theta).
 #[inline]
 pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
-    fresnel.relative_at(geometry) * shadowing::v_groove_over_cosines(geometry)
+    fresnel.relative_at(geometry) * VGroove.over_cosines_at(geometry)
 }
 
 #[cfg(test)]

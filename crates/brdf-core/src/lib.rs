@@ -56,6 +56,7 @@
 
 pub mod brdf;
 pub mod facet;
+pub mod family;
 pub mod fresnel;
 pub mod geometry;
 pub mod published;
@@ -64,5 +65,6 @@ pub mod reflectance;
 pub mod shadowing;
 mod trigonometry;
 
-pub use brdf::{ParameterError, Parameters, ThreeParameterBrdf};
+pub use brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
+pub use family::{AnyBrdf, Family, ModelParameters};
 pub use geometry::{Geometry, GeometryError};

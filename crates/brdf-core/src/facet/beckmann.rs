@@ -1,0 +1,50 @@
+//! Beckmann's distribution of facet normals.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::FacetDistribution;
+
+/// The distribution of a surface with normally distributed slopes (Beckmann and Spizzichino 1963;
+/// Cook and Torrance 1982, eq. 3), its root mean square slope times sqrt(2) being the width k1:
+///
+/// ```text
+/// f(alpha) / f(0) = exp(-tan^2 alpha / k1^2) / cos^4 alpha,   f(0) = 1 / (pi k1^2)
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Beckmann {
+    k1: f64,
+    reciprocal_k1_squared: f64,
+}
+
+impl Beckmann {
+    /// The distribution of width k1 > 0, which is not checked here.
+    pub fn new(k1: f64) -> Self {
+        Self {
+            k1,
+            reciprocal_k1_squared: 1.0 / (k1 * k1),
+        }
+    }
+}
+
+impl FacetDistribution for Beckmann {
+    fn k1(&self) -> f64 {
+        self.k1
+    }
+
+    #[inline]
+    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        let sec2_alpha = sec_alpha * sec_alpha;
+        (-tan2_alpha * self.reciprocal_k1_squared).exp() * sec2_alpha * sec2_alpha
+    }
+
+    /// 2 tan^2 alpha / k1^3 times the value.
+    #[inline]
+    fn derivative_k1(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        let slope = 2.0 * tan2_alpha * self.reciprocal_k1_squared;
+        slope * self.relative(tan2_alpha, sec_alpha) / self.k1
+    }
+
+    fn peak_density(&self) -> f64 {
+        FRAC_1_PI * self.reciprocal_k1_squared
+    }
+}

@@ -1,0 +1,53 @@
+//! The GGX distribution of facet normals.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::FacetDistribution;
+
+/// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33),
+/// its roughness alpha_g being the width k1:
+///
+/// ```text
+/// f(alpha) / f(0) = (k1^2 / (sin^2 alpha + k1^2 cos^2 alpha))^2
+///                 = (k1^2 sec^2 alpha / (tan^2 alpha + k1^2))^2,   f(0) = 1 / (pi k1^2)
+/// ```
+///
+/// Not the paper's: eq. (2) has the first power, and cos alpha on top.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ggx {
+    k1: f64,
+    k1_squared: f64,
+}
+
+impl Ggx {
+    /// The distribution of width k1 > 0, which is not checked here.
+    pub fn new(k1: f64) -> Self {
+        Self {
+            k1,
+            k1_squared: k1 * k1,
+        }
+    }
+}
+
+impl FacetDistribution for Ggx {
+    fn k1(&self) -> f64 {
+        self.k1
+    }
+
+    #[inline]
+    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        let base = self.k1_squared * (sec_alpha * sec_alpha) / (tan2_alpha + self.k1_squared);
+        base * base
+    }
+
+    /// 4 tan^2 alpha / (k1 (tan^2 alpha + k1^2)) times the value.
+    #[inline]
+    fn derivative_k1(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        let slope = tan2_alpha / (tan2_alpha + self.k1_squared);
+        4.0 * slope * self.relative(tan2_alpha, sec_alpha) / self.k1
+    }
+
+    fn peak_density(&self) -> f64 {
+        FRAC_1_PI / self.k1_squared
+    }
+}

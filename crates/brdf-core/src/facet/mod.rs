@@ -1,0 +1,149 @@
+//! Distributions of facet normals: the paper's, eq. (2), and those of its neighbours.
+//!
+//! Each is taken relative to its peak, f(alpha)/f(0), as the model has it. Their width k1 means the
+//! same for all: far from the peak of a narrow one, f(alpha) depends on tan alpha / k1 alone.
+
+mod beckmann;
+mod ellipsoid;
+mod ggx;
+mod power;
+
+pub use beckmann::Beckmann;
+pub use ellipsoid::Ellipsoid;
+pub use ggx::Ggx;
+pub use power::{P_DOMAIN, Power};
+
+/// A distribution of facet normals over their tilt alpha, as a function of tan^2 alpha and
+/// sec alpha, which a [`Geometry`](crate::Geometry) has without a loss of digits.
+pub trait FacetDistribution: Copy {
+    /// The width k1.
+    fn k1(&self) -> f64;
+
+    /// f(alpha)/f(0), dimensionless: 1 at alpha = 0.
+    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64;
+
+    /// The derivative of f(alpha)/f(0) by k1.
+    fn derivative_k1(&self, tan2_alpha: f64, sec_alpha: f64) -> f64;
+
+    /// The derivative of f(alpha)/f(0) by the exponent p; 0 for a distribution without one.
+    fn derivative_p(&self, _tan2_alpha: f64, _sec_alpha: f64) -> f64 {
+        0.0
+    }
+
+    /// f(0) in 1/sr, from the normalisation: the integral of f(alpha) cos alpha over the
+    /// hemisphere of facet normals is 1.
+    fn peak_density(&self) -> f64;
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    const LAWS: [&str; 4] = ["ellipsoid", "power", "ggx", "beckmann"];
+
+    /// Value, derivative by k1, derivative by p, peak density.
+    fn evaluate(law: &str, k1: f64, p: f64, alpha: f64) -> [f64; 4] {
+        fn all(facet: impl FacetDistribution, alpha: f64) -> [f64; 4] {
+            let (t, sec) = (alpha.tan().powi(2), 1.0 / alpha.cos());
+            [
+                facet.relative(t, sec),
+                facet.derivative_k1(t, sec),
+                facet.derivative_p(t, sec),
+                facet.peak_density(),
+            ]
+        }
+        match law {
+            "ellipsoid" => all(Ellipsoid::new(k1), alpha),
+            "power" => all(Power::new(k1, p), alpha),
+            "ggx" => all(Ggx::new(k1), alpha),
+            _ => all(Beckmann::new(k1), alpha),
+        }
+    }
+
+    #[test]
+    fn the_peak_is_one_for_any_width() {
+        for k1 in [1e-8, 0.1, 1.0, 1e8] {
+            for law in LAWS {
+                assert_eq!(evaluate(law, k1, 2.0, 0.0)[0], 1.0, "{law} {k1}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_peak_density_normalises() {
+        // Midpoint rule over the tilt of the normalisation integral.
+        for k1 in [0.2, 0.94, 0.95, 0.96, 1.0, 1.04, 1.05, 1.06, 1.338, 20.0] {
+            for p in [0.5, 2.3] {
+                for law in LAWS {
+                    let steps = 20_000;
+                    let sum: f64 = (0..steps)
+                        .map(|i| {
+                            let alpha = std::f64::consts::FRAC_PI_2 * (f64::from(i) + 0.5)
+                                / f64::from(steps);
+                            evaluate_relative(law, k1, p, alpha) * alpha.cos() * alpha.sin()
+                        })
+                        .sum();
+                    let integral = TAU * sum * std::f64::consts::FRAC_PI_2 / f64::from(steps);
+                    let peak = evaluate(law, k1, p, 0.0)[3];
+                    assert!(
+                        (peak * integral - 1.0).abs() < 2e-5,
+                        "{law} {k1} {p}: {}",
+                        peak * integral
+                    );
+                }
+            }
+        }
+    }
+
+    fn evaluate_relative(law: &str, k1: f64, p: f64, alpha: f64) -> f64 {
+        evaluate(law, k1, p, alpha)[0]
+    }
+
+    #[test]
+    fn the_exponents_one_and_two_are_known_laws() {
+        for alpha in [0.0_f64, 0.1, 0.8, 1.5] {
+            let ellipsoid = evaluate_relative("ellipsoid", 0.3, 1.0, alpha);
+            let power = evaluate_relative("power", 0.3, 1.0, alpha);
+            assert!((power / ellipsoid - 1.0).abs() < 1e-13);
+            let ggx = evaluate_relative("ggx", 0.3, 2.0, alpha) * alpha.cos();
+            let power = evaluate_relative("power", 0.3, 2.0, alpha);
+            assert!((power / ggx - 1.0).abs() < 1e-13);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn derivatives_are_those_of_the_value(
+            log_k1 in -3.0..3.0_f64, p in 0.3..8.0_f64, alpha in 0.0..1.5,
+        ) {
+            let k1 = log_k1.exp();
+            for law in LAWS {
+                let (h, q) = (1e-5 * k1, 1e-5 * p);
+                let at = |k1, p| evaluate_relative(law, k1, p, alpha);
+                let [value, by_k1, by_p, _] = evaluate(law, k1, p, alpha);
+                let difference = (at(k1 + h, p) - at(k1 - h, p)) / (2.0 * h);
+                let scale = (value / k1).max(1.0 / k1).max(by_k1.abs());
+                prop_assert!((by_k1 - difference).abs() < 1e-6 * scale, "{law}");
+                let difference = (at(k1, p + q) - at(k1, p - q)) / (2.0 * q);
+                prop_assert!((by_p - difference).abs() < 1e-6 * (1.0 + by_p.abs()), "{law}");
+            }
+        }
+
+        #[test]
+        fn values_are_finite_and_not_negative(
+            log_k1 in -18.0..18.0_f64, p in 0.1..16.0_f64, alpha in 0.0..1.57,
+        ) {
+            for law in LAWS {
+                let [value, by_k1, by_p, peak] = evaluate(law, log_k1.exp(), p, alpha);
+                prop_assert!(value >= 0.0 && value.is_finite(), "{law}: {value}");
+                prop_assert!(by_k1 >= 0.0 && by_k1.is_finite(), "{law}: {by_k1}");
+                prop_assert!(by_p.is_finite(), "{law}: {by_p}");
+                prop_assert!(peak > 0.0 && peak.is_finite(), "{law}: {peak}");
+            }
+        }
+    }
+}

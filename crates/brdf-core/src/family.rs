@@ -1,0 +1,226 @@
+//! The model and its relatives: which terms they are made of, and one of them chosen at run time.
+
+use serde::{Deserialize, Serialize};
+
+use crate::brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
+use crate::facet::{Beckmann, Ellipsoid, Ggx, P_DOMAIN, Power};
+use crate::shadowing::{Smith, VGroove};
+use crate::{Geometry, GeometryError};
+
+/// A combination of facet distribution and shadowing; the Fresnel factor and the Lambertian part
+/// are the same for all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Family {
+    /// The paper's: the ellipsoid of eq. (2), V-groove shadowing.
+    Paper,
+    /// The ellipsoid with Smith's shadowing.
+    Smith,
+    /// The ellipsoid with a free exponent p, V-groove shadowing.
+    Power,
+    /// GGX with Smith's shadowing.
+    Ggx,
+    /// Beckmann with V-groove shadowing.
+    Beckmann,
+}
+
+impl Family {
+    /// All families.
+    pub const ALL: [Self; 5] = [
+        Self::Paper,
+        Self::Smith,
+        Self::Power,
+        Self::Ggx,
+        Self::Beckmann,
+    ];
+}
+
+/// All numbers that a model of any family may have, in the order (k2, kD, k1, n, p).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ModelParameters {
+    /// Specular weight k2 >= 0.
+    pub k2: f64,
+    /// Diffuse weight kD >= 0.
+    pub kd: f64,
+    /// Width k1 of the facet distribution.
+    pub k1: f64,
+    /// Refractive index n of the facets.
+    pub n: f64,
+    /// Exponent p of the facet distribution; 1 where the family has none.
+    pub p: f64,
+}
+
+impl ModelParameters {
+    /// The paper's three parameters at the refractive index n.
+    pub fn three(parameters: Parameters, n: f64) -> Self {
+        let Parameters { k2, kd, k1 } = parameters;
+        Self {
+            k2,
+            kd,
+            k1,
+            n,
+            p: 1.0,
+        }
+    }
+
+    /// k2, kD and k1.
+    pub fn parameters(&self) -> Parameters {
+        Parameters {
+            k2: self.k2,
+            kd: self.kd,
+            k1: self.k1,
+        }
+    }
+}
+
+/// A BRDF whose family is chosen at run time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AnyBrdf {
+    /// [`Family::Paper`].
+    Paper(ThreeParameterBrdf),
+    /// [`Family::Smith`].
+    Smith(MicrofacetBrdf<Ellipsoid, Smith>),
+    /// [`Family::Power`].
+    Power(MicrofacetBrdf<Power, VGroove>),
+    /// [`Family::Ggx`].
+    Ggx(MicrofacetBrdf<Ggx, Smith>),
+    /// [`Family::Beckmann`].
+    Beckmann(MicrofacetBrdf<Beckmann, VGroove>),
+}
+
+/// The same expression for the BRDF of each family.
+macro_rules! each {
+    ($any:expr, $brdf:ident => $value:expr) => {
+        match $any {
+            AnyBrdf::Paper($brdf) => $value,
+            AnyBrdf::Smith($brdf) => $value,
+            AnyBrdf::Power($brdf) => $value,
+            AnyBrdf::Ggx($brdf) => $value,
+            AnyBrdf::Beckmann($brdf) => $value,
+        }
+    };
+}
+
+impl AnyBrdf {
+    /// The BRDF of a family with its parameters.
+    ///
+    /// Errors: a parameter outside its domain.
+    pub fn new(family: Family, at: &ModelParameters) -> Result<Self, ParameterError> {
+        let (three, n, p) = (at.parameters(), at.n, at.p);
+        Ok(match family {
+            Family::Paper => Self::Paper(ThreeParameterBrdf::new(three, n)?),
+            Family::Smith => Self::Smith(MicrofacetBrdf::of_terms(
+                three,
+                n,
+                Ellipsoid::new,
+                Smith::new,
+            )?),
+            Family::Power => {
+                if !(P_DOMAIN.0..=P_DOMAIN.1).contains(&p) {
+                    return Err(ParameterError::P(p));
+                }
+                let facet = |k1| Power::new(k1, p);
+                Self::Power(MicrofacetBrdf::of_terms(three, n, facet, |_| VGroove)?)
+            }
+            Family::Ggx => Self::Ggx(MicrofacetBrdf::of_terms(three, n, Ggx::new, Smith::new)?),
+            Family::Beckmann => {
+                Self::Beckmann(MicrofacetBrdf::of_terms(three, n, Beckmann::new, |_| {
+                    VGroove
+                })?)
+            }
+        })
+    }
+
+    /// f_r in 1/sr.
+    pub fn value(&self, geometry: &Geometry) -> f64 {
+        each!(self, brdf => brdf.value(geometry))
+    }
+
+    /// The derivatives of f_r by (k2, kD, k1, n, p), in 1/sr per unit.
+    pub fn gradient(&self, geometry: &Geometry) -> [f64; 5] {
+        each!(self, brdf => {
+            let [k2, kd, k1] = brdf.gradient(geometry);
+            [k2, kd, k1, brdf.derivative_n(geometry), brdf.derivative_p(geometry)]
+        })
+    }
+
+    /// [`MicrofacetBrdf::hemispherical_reflectance`].
+    pub fn hemispherical_reflectance(
+        &self,
+        psi: f64,
+        tolerance: f64,
+    ) -> Result<f64, GeometryError> {
+        each!(self, brdf => brdf.hemispherical_reflectance(psi, tolerance))
+    }
+
+    /// [`MicrofacetBrdf::energy_violation_angle`].
+    pub fn energy_violation_angle(&self) -> Option<f64> {
+        each!(self, brdf => brdf.energy_violation_angle())
+    }
+
+    /// [`MicrofacetBrdf::implied_facet_reflectance`].
+    pub fn implied_facet_reflectance(&self) -> f64 {
+        each!(self, brdf => brdf.implied_facet_reflectance())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn at(k2: f64, kd: f64, k1: f64, n: f64, p: f64) -> ModelParameters {
+        ModelParameters { k2, kd, k1, n, p }
+    }
+
+    #[test]
+    fn an_exponent_outside_the_domain_is_named() {
+        let error = AnyBrdf::new(Family::Power, &at(0.1, 0.1, 0.1, 1.5, 0.0)).unwrap_err();
+        assert!(error.to_string().contains("p = 0"));
+    }
+
+    proptest! {
+        #[test]
+        fn every_family_is_reciprocal_and_positive(
+            log_k1 in -14.0..7.0_f64, n in 1.0..6.0, p in 0.1..16.0,
+            psi in 0.0..1.5707, theta in 0.0..1.5707, phi in -7.0..7.0_f64,
+        ) {
+            let there = Geometry::new(psi, theta, phi).unwrap();
+            let back = Geometry::new(theta, psi, phi).unwrap();
+            for family in Family::ALL {
+                let brdf = AnyBrdf::new(family, &at(0.3, 0.1, log_k1.exp(), n, p)).unwrap();
+                let value = brdf.value(&there);
+                prop_assert_eq!(value, brdf.value(&back));
+                prop_assert!(value > 0.0 && value.is_finite());
+            }
+        }
+
+        #[test]
+        fn gradients_are_those_of_the_values(
+            k2 in 0.01..3.0, kd in 0.01..1.0, log_k1 in -3.0..1.0_f64, n in 1.1..5.0, p in 0.3..5.0,
+            psi in 0.0..1.5, theta in -1.5..1.5,
+        ) {
+            let geometry = Geometry::in_plane(psi, theta).unwrap();
+            let here = [k2, kd, log_k1.exp(), n, p];
+            for family in Family::ALL {
+                let brdf = |x: [f64; 5]| {
+                    AnyBrdf::new(family, &at(x[0], x[1], x[2], x[3], x[4])).unwrap()
+                };
+                let value = brdf(here).value(&geometry);
+                let gradient = brdf(here).gradient(&geometry);
+                for j in 0..5 {
+                    let step = 1e-5 * here[j];
+                    let moved = |sign: f64| {
+                        let mut moved = here;
+                        moved[j] += sign * step;
+                        brdf(moved).value(&geometry)
+                    };
+                    let difference = (moved(1.0) - moved(-1.0)) / (2.0 * step);
+                    let tolerance = 1e-6 * (value / here[j]).max(gradient[j].abs());
+                    prop_assert!((gradient[j] - difference).abs() < tolerance, "{:?} {}", family, j);
+                }
+            }
+        }
+    }
+}

@@ -1,39 +1,73 @@
 //! The error criterion E of eq. (5), with its derivatives by the parameters.
 
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
-use brdf_core::brdf::mirror_factor;
+use brdf_core::facet::{Beckmann, Ellipsoid, FacetDistribution, Ggx, Power};
 use brdf_core::fresnel::Dielectric;
-use brdf_core::{GeometryError, Parameters};
-use nalgebra::{Matrix3, Vector3};
+use brdf_core::shadowing::{Shadowing, Smith, VGroove};
+use brdf_core::{Family, GeometryError, ModelParameters};
+use nalgebra::DMatrix;
 
-use crate::measurement::Measurement;
+use crate::measurement::Measurements;
+use crate::model::Parameter;
 use crate::weights::Weights;
 
 /// Sizes of the largest weighted reading for which all squares and their products stay well within
 /// the range of numbers; far beyond any BRDF.
 const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
-/// E as a function of the parameters, for one set of readings:
+/// So many readings are evaluated together: their columns stay in the nearest cache.
+const BLOCK: usize = 32;
+
+/// E as a function of the parameters, for one set of readings and one family of models:
 ///
 /// ```text
 /// E = sum g (f_meas - f_model)^2 cos^2 theta / sum g (f_meas cos theta)^2
-///   = sum (y - kD a - k2 s k1^2/(t + k1^2))^2
+///   = sum (y - kD a - k2 u)^2
 /// ```
 ///
 /// What does not depend on the parameters is computed once for each reading: with
-/// w = sqrt(g) cos theta / sqrt(sum g (f_meas cos theta)^2), y = w `f_meas`, a = w/pi,
-/// s = a sec alpha R0(gamma) G/(cos psi cos theta) and t = tan^2 alpha. Vectors and matrices are
-/// in the order (k2, kD, k1). (Eq. 5 of Li, Yan and Wu 2002.)
+/// w = sqrt(g) cos theta / sqrt(sum g (f_meas cos theta)^2), y = w `f_meas` and a = w/pi; and
+/// u = a f(alpha)/f(0) R0(gamma) G/(cos psi cos theta). (Eq. 5 of Li, Yan and Wu 2002.)
+///
+/// The readings stand in the order of their incidences, which are ascending.
 #[derive(Debug, Clone)]
 pub struct Criterion {
+    family: Family,
+    /// The index that `fresnel` belongs to.
+    n: f64,
     measured: Vec<f64>,
     diffuse: Vec<f64>,
-    specular: Vec<f64>,
-    tan2_alpha: Vec<f64>,
-    /// The sums that do not depend on k1.
+    /// a, with G/(cos psi cos theta) where that does not depend on k1.
+    shadowed: Vec<f64>,
+    fresnel: Vec<f64>,
+    angles: Vec<Angles>,
+    /// w sigma, where every reading has a standard deviation.
+    noise: Option<Vec<f64>>,
+    segments: Vec<Segment>,
+    /// Which reading each row is.
+    readings: Vec<usize>,
+    /// The sums that do not depend on the parameters.
     diffuse_squared: f64,
     diffuse_measured: f64,
+}
+
+/// What the terms of the model need of the angles of a reading.
+#[derive(Debug, Clone, Copy)]
+struct Angles {
+    tan2_alpha: f64,
+    sec_alpha: f64,
+    cos_psi: f64,
+    cos_theta: f64,
+    cos_gamma: f64,
+    sin2_gamma: f64,
+}
+
+/// The rows of one incidence.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Segment {
+    pub(crate) psi: f64,
+    pub(crate) rows: Range<usize>,
 }
 
 /// E and what a step of Gauss and Newton needs: half the gradient of E, J^T r, and half its
@@ -48,9 +82,8 @@ pub struct NormalEquations<const P: usize> {
     pub matrix: nalgebra::SMatrix<f64, P, P>,
 }
 
-/// The scalar products that the exact solution for k2 and kD needs at one k1, with
-/// u = s k1^2/(t + k1^2).
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The scalar products that the exact solution for k2 and kD needs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ProfileSums {
     pub(crate) uu: f64,
     pub(crate) ua: f64,
@@ -67,7 +100,8 @@ pub enum CriterionError {
         "weights by 1/sigma^2 need the standard deviation of every reading (column sigma_per_sr)"
     )]
     NoSigma,
-    /// Angles outside the model's domain, which no [validated](Measurement::validated) reading has.
+    /// Angles outside the model's domain, which no
+    /// [validated](crate::Measurement::validated) reading has.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
     /// The squares of the readings, or of what they are divided by, leave the range of numbers.
@@ -78,41 +112,117 @@ pub enum CriterionError {
     AllZero,
 }
 
+/// Columns of a block of rows: y, a, u and the derivatives of u by k1, n and p. Rows beyond the
+/// last are zero.
+struct Block {
+    y: [f64; BLOCK],
+    a: [f64; BLOCK],
+    u: [f64; BLOCK],
+    by: [[f64; BLOCK]; 3],
+}
+
 impl Criterion {
-    /// The criterion over the readings at the refractive index n.
+    /// The criterion over the measurements at the refractive index n.
     ///
     /// n is in the model's domain. Errors: a weight that cannot be had, readings whose E is not
     /// defined, and angles outside the domain.
     pub fn new(
-        readings: &[Measurement],
+        measurements: &Measurements,
+        family: Family,
         n: f64,
         weights: &Weights,
     ) -> Result<Self, CriterionError> {
-        let fresnel = Dielectric::new(n);
-        let mut criterion = Self::with_capacity(readings.len());
-        for reading in readings {
-            let weight = weights.of(reading).ok_or(CriterionError::NoSigma)?;
-            let geometry = reading.geometry()?;
-            let w = weight.sqrt() * geometry.cos_theta();
-            let a = w / std::f64::consts::PI;
-            criterion.measured.push(w * reading.brdf);
-            criterion.diffuse.push(a);
-            criterion
-                .specular
-                .push(a * geometry.sec_alpha() * mirror_factor(&fresnel, &geometry));
-            criterion.tan2_alpha.push(geometry.tan2_alpha());
+        let incidences = measurements.incidences();
+        let weights = weights
+            .of_all(measurements)
+            .ok_or(CriterionError::NoSigma)?;
+        let mut criterion = Self::with_capacity(family, n, weights.len());
+        for incidence in &incidences {
+            let start = criterion.len();
+            for &i in &incidence.readings {
+                let reading = &measurements.readings()[i];
+                let geometry = reading.geometry()?;
+                let w = weights[i].sqrt() * geometry.cos_theta();
+                let a = w / std::f64::consts::PI;
+                criterion.measured.push(w * reading.brdf);
+                criterion.diffuse.push(a);
+                criterion.shadowed.push(match family {
+                    Family::Smith | Family::Ggx => a,
+                    _ => a * VGroove.over_cosines_at(&geometry),
+                });
+                criterion.angles.push(Angles {
+                    tan2_alpha: geometry.tan2_alpha(),
+                    sec_alpha: geometry.sec_alpha(),
+                    cos_psi: geometry.cos_psi(),
+                    cos_theta: geometry.cos_theta(),
+                    cos_gamma: geometry.cos_gamma(),
+                    sin2_gamma: geometry.sin2_gamma(),
+                });
+                criterion.readings.push(i);
+                match (&mut criterion.noise, reading.sigma) {
+                    (Some(noise), Some(sigma)) => noise.push(w * sigma),
+                    (noise, _) => *noise = None,
+                }
+            }
+            criterion.segments.push(Segment {
+                psi: incidence.psi,
+                rows: start..criterion.len(),
+            });
+        }
+        criterion.fresnel = criterion.fresnel_column(n);
+        criterion.normalised()
+    }
+
+    /// The criterion over some of the incidences: those whose index `keep` accepts.
+    pub(crate) fn subset(&self, keep: impl Fn(usize) -> bool) -> Result<Self, CriterionError> {
+        let kept = |(_, segment): (usize, &Segment)| (segment.psi, segment.rows.clone().collect());
+        let segments = self.segments.iter().enumerate();
+        self.picked(segments.filter(|(i, _)| keep(*i)).map(kept).collect())
+    }
+
+    /// The criterion over at most about `limit` of the rows, evenly over each incidence.
+    pub(crate) fn thinned(&self, limit: usize) -> Result<Self, CriterionError> {
+        let step = self.len().div_ceil(limit);
+        let kept = |segment: &Segment| (segment.psi, segment.rows.clone().step_by(step).collect());
+        self.picked(self.segments.iter().map(kept).collect())
+    }
+
+    /// The criterion over the given rows of each incidence.
+    fn picked(&self, segments: Vec<(f64, Vec<usize>)>) -> Result<Self, CriterionError> {
+        let mut criterion = Self::with_capacity(self.family, self.n, self.len());
+        if self.noise.is_none() {
+            criterion.noise = None;
+        }
+        for (psi, rows) in segments {
+            let start = criterion.len();
+            for i in rows {
+                criterion.measured.push(self.measured[i]);
+                criterion.diffuse.push(self.diffuse[i]);
+                criterion.shadowed.push(self.shadowed[i]);
+                criterion.fresnel.push(self.fresnel[i]);
+                criterion.angles.push(self.angles[i]);
+                criterion.readings.push(self.readings[i]);
+                if let (Some(to), Some(from)) = (&mut criterion.noise, &self.noise) {
+                    to.push(from[i]);
+                }
+            }
+            let rows = start..criterion.len();
+            criterion.segments.push(Segment { psi, rows });
         }
         criterion.normalised()
     }
 
-    /// The criterion over some of the readings: those whose index `keep` accepts.
-    pub fn subset(&self, keep: impl Fn(usize) -> bool) -> Result<Self, CriterionError> {
-        let mut criterion = Self::with_capacity(self.len());
-        for i in (0..self.len()).filter(|&i| keep(i)) {
-            criterion.measured.push(self.measured[i]);
-            criterion.diffuse.push(self.diffuse[i]);
-            criterion.specular.push(self.specular[i]);
-            criterion.tan2_alpha.push(self.tan2_alpha[i]);
+    /// The criterion with the weight of each row multiplied by a factor >= 0.
+    pub(crate) fn reweighted(&self, factor: impl Fn(usize) -> f64) -> Result<Self, CriterionError> {
+        let mut criterion = self.clone();
+        for i in 0..self.len() {
+            let root = factor(i).sqrt();
+            criterion.measured[i] *= root;
+            criterion.diffuse[i] *= root;
+            criterion.shadowed[i] *= root;
+            if let Some(noise) = &mut criterion.noise {
+                noise[i] *= root;
+            }
         }
         criterion.normalised()
     }
@@ -132,81 +242,101 @@ impl Criterion {
         self.measured.is_empty()
     }
 
+    /// The rows of each incidence, in ascending order.
+    pub(crate) fn segments(&self) -> &[Segment] {
+        &self.segments
+    }
+
+    /// Which reading each row is.
+    pub(crate) fn readings(&self) -> &[usize] {
+        &self.readings
+    }
+
+    /// w sigma of each row, where every reading has a standard deviation.
+    pub(crate) fn noise(&self) -> Option<&[f64]> {
+        self.noise.as_deref()
+    }
+
     /// E, as a fraction (times 100: the paper's percent).
-    pub fn error(&self, parameters: &Parameters) -> f64 {
-        let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
-        let k1_squared = k1 * k1;
-        self.sum::<4, 1>(|y, a, s, t| {
-            let residual = y - kd * a - k2 * s * (k1_squared / (t + k1_squared));
-            [residual * residual]
-        })[0]
+    pub fn error(&self, at: &ModelParameters) -> f64 {
+        let mut error = 0.0;
+        self.for_blocks(at, [false; 3], 0..self.len(), |_, block| {
+            let r = residual(block, at);
+            error += dot(&r, &r);
+        });
+        error
     }
 
     /// The terms under the sum of E before they are squared: model - measured and measured, for
-    /// each reading.
-    pub fn residuals(&self, parameters: &Parameters) -> impl Iterator<Item = (f64, f64)> {
-        let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
-        let k1_squared = k1 * k1;
-        (0..self.len()).map(move |i| {
-            let (y, a) = (self.measured[i], self.diffuse[i]);
-            let u = self.specular[i] * (k1_squared / (self.tan2_alpha[i] + k1_squared));
-            (k2 * u + kd * a - y, y)
-        })
+    /// each row.
+    pub(crate) fn residuals(&self, at: &ModelParameters) -> Vec<(f64, f64)> {
+        let mut residuals = Vec::with_capacity(self.len());
+        self.for_blocks(at, [false; 3], 0..self.len(), |rows, block| {
+            let r = residual(block, at);
+            residuals.extend(r.into_iter().zip(block.y).take(rows.len()));
+        });
+        residuals
     }
 
-    /// E with J^T r and J^T J for the residuals r = model - measured.
-    pub fn normal_equations(&self, parameters: &Parameters) -> NormalEquations<3> {
-        let [k2, kd, k1] = [parameters.k2, parameters.kd, parameters.k1];
-        let k1_squared = k1 * k1;
-        let [rr, ur, ar, vr, uu, ua, uv, av, vv] = self.sum::<2, 9>(|y, a, s, t| {
-            let reciprocal = 1.0 / (t + k1_squared);
-            let u = s * (k1_squared * reciprocal);
-            // d(u)/d(k1) = 2 u t / (k1 (t + k1^2)); the factor 2 k2/k1 is put on afterwards.
-            let v = u * (t * reciprocal);
-            let r = k2 * u + kd * a - y;
-            [
-                r * r,
-                u * r,
-                a * r,
-                v * r,
-                u * u,
-                u * a,
-                u * v,
-                a * v,
-                v * v,
-            ]
+    /// E with J^T r and J^T J for the residuals r = model - measured, by the free parameters.
+    pub fn normal_equations<const P: usize>(
+        &self,
+        at: &ModelParameters,
+        free: &[Parameter; P],
+    ) -> NormalEquations<P> {
+        let mut equations = NormalEquations {
+            error: 0.0,
+            gradient: nalgebra::SVector::zeros(),
+            matrix: nalgebra::SMatrix::zeros(),
+        };
+        self.for_blocks(at, derivatives_for(free), 0..self.len(), |_, block| {
+            let r = residual(block, at);
+            equations.error += dot(&r, &r);
+            let columns: [&[f64; BLOCK]; P] = free.map(|parameter| column(block, parameter));
+            for i in 0..P {
+                equations.gradient[i] += dot(columns[i], &r);
+                for j in 0..=i {
+                    equations.matrix[(i, j)] += dot(columns[i], columns[j]);
+                }
+            }
         });
-        let f = 2.0 * k2 / k1;
-        NormalEquations {
-            error: rr,
-            gradient: Vector3::new(ur, ar, f * vr),
-            matrix: Matrix3::new(
-                uu,
-                ua,
-                f * uv,
-                ua,
-                self.diffuse_squared,
-                f * av,
-                f * uv,
-                f * av,
-                f * f * vv,
-            ),
+        let factors = free.map(|parameter| column_factor(at, parameter));
+        for i in 0..P {
+            equations.gradient[i] *= factors[i];
+            for j in 0..=i {
+                let value = equations.matrix[(i, j)] * (factors[i] * factors[j]);
+                (equations.matrix[(i, j)], equations.matrix[(j, i)]) = (value, value);
+            }
         }
+        equations
     }
 
-    pub(crate) fn profile_sums(&self, k1: f64) -> ProfileSums {
-        let k1_squared = k1 * k1;
-        let [uu, ua, uy] = self.sum::<4, 3>(|y, a, s, t| {
-            let u = s * (k1_squared / (t + k1_squared));
-            [u * u, u * a, u * y]
+    /// The Jacobian of the residuals: a row for each reading, a column for each free parameter.
+    pub(crate) fn jacobian(&self, at: &ModelParameters, free: &[Parameter]) -> DMatrix<f64> {
+        let mut jacobian = DMatrix::zeros(self.len(), free.len());
+        self.for_blocks(at, derivatives_for(free), 0..self.len(), |rows, block| {
+            for (j, &parameter) in free.iter().enumerate() {
+                let factor = column_factor(at, parameter);
+                for (i, value) in rows.clone().zip(column(block, parameter)) {
+                    jacobian[(i, j)] = value * factor;
+                }
+            }
         });
-        ProfileSums {
-            uu,
-            ua,
-            uy,
+        jacobian
+    }
+
+    pub(crate) fn profile_sums(&self, at: &ModelParameters) -> ProfileSums {
+        let mut sums = ProfileSums {
             aa: self.diffuse_squared,
             ay: self.diffuse_measured,
-        }
+            ..ProfileSums::default()
+        };
+        self.for_blocks(at, [false; 3], 0..self.len(), |_, block| {
+            sums.uu += dot(&block.u, &block.u);
+            sums.ua += dot(&block.u, &block.a);
+            sums.uy += dot(&block.u, &block.y);
+        });
+        sums
     }
 
     /// kD of the best Lambertian description, negative readings included.
@@ -214,46 +344,187 @@ impl Criterion {
         self.diffuse_measured / self.diffuse_squared
     }
 
-    /// Sums over all readings of what `term(y, a, s, t)` gives for each.
-    ///
-    /// Several running sums side by side, so that they do not wait for each other; they come out
-    /// the same on every processor. `LANES` times `N` numbers should fit into the registers.
-    fn sum<const LANES: usize, const N: usize>(
-        &self,
-        term: impl Fn(f64, f64, f64, f64) -> [f64; N],
-    ) -> [f64; N] {
-        let mut sums = [[0.0; LANES]; N];
-        let columns = [
-            &self.measured,
-            &self.diffuse,
-            &self.specular,
-            &self.tan2_alpha,
-        ];
-        let [y, a, s, t] = columns.map(|column| column.as_chunks::<LANES>());
-        for (((y, a), s), t) in y.0.iter().zip(a.0).zip(s.0).zip(t.0) {
-            let terms: [_; LANES] =
-                std::array::from_fn(|lane| term(y[lane], a[lane], s[lane], t[lane]));
-            for (i, sum) in sums.iter_mut().enumerate() {
-                for (sum, terms) in sum.iter_mut().zip(&terms) {
-                    *sum += terms[i];
-                }
-            }
-        }
-        for (lane, (((y, a), s), t)) in y.1.iter().zip(a.1).zip(s.1).zip(t.1).enumerate() {
-            for (sum, term) in sums.iter_mut().zip(term(*y, *a, *s, *t)) {
-                sum[lane] += term;
-            }
-        }
-        sums.map(|lanes| lanes.iter().sum())
+    /// R0(gamma) of each row at the refractive index n.
+    pub(crate) fn fresnel_column(&self, n: f64) -> Vec<f64> {
+        let fresnel = Dielectric::new(n);
+        let relative = |angles: &Angles| fresnel.relative(angles.cos_gamma);
+        self.angles.iter().map(relative).collect()
     }
 
-    fn with_capacity(readings: usize) -> Self {
+    /// u of each row but for its Fresnel factor, at a width k1 and an exponent p.
+    pub(crate) fn shape_column(&self, k1: f64, p: f64, shape: &mut Vec<f64>) {
+        fn fill<F: FacetDistribution, S: Shadowing>(
+            criterion: &Criterion,
+            facet: F,
+            shadowing: S,
+            shape: &mut Vec<f64>,
+        ) {
+            shape.clear();
+            shape.extend((0..criterion.len()).map(|i| criterion.shape(facet, shadowing, i)));
+        }
+        match self.family {
+            Family::Paper => fill(self, Ellipsoid::new(k1), VGroove, shape),
+            Family::Smith => fill(self, Ellipsoid::new(k1), Smith::new(k1), shape),
+            Family::Power => fill(self, Power::new(k1, p), VGroove, shape),
+            Family::Ggx => fill(self, Ggx::new(k1), Smith::new(k1), shape),
+            Family::Beckmann => fill(self, Beckmann::new(k1), VGroove, shape),
+        }
+    }
+
+    /// The columns y and a.
+    pub(crate) fn fixed_columns(&self) -> (&[f64], &[f64]) {
+        (&self.measured, &self.diffuse)
+    }
+
+    /// The index of the Fresnel factors that were computed beforehand.
+    pub(crate) fn n(&self) -> f64 {
+        self.n
+    }
+
+    #[inline]
+    fn shape<F: FacetDistribution, S: Shadowing>(&self, facet: F, shadowing: S, i: usize) -> f64 {
+        let angles = &self.angles[i];
+        let shape = self.shadowed[i] * facet.relative(angles.tan2_alpha, angles.sec_alpha);
+        if S::DEPENDS_ON_WIDTH {
+            let (psi, theta) = (angles.cos_psi, angles.cos_theta);
+            shape * shadowing.over_cosines(psi, theta, angles.tan2_alpha)
+        } else {
+            shape
+        }
+    }
+
+    #[inline]
+    fn shape_by_k1<F: FacetDistribution, S: Shadowing>(
+        &self,
+        facet: F,
+        shadowing: S,
+        i: usize,
+    ) -> f64 {
+        let angles = &self.angles[i];
+        let (t, sec) = (angles.tan2_alpha, angles.sec_alpha);
+        let slope = facet.derivative_k1(t, sec);
+        if S::DEPENDS_ON_WIDTH {
+            let (psi, theta) = (angles.cos_psi, angles.cos_theta);
+            let by_facet = slope * shadowing.over_cosines(psi, theta, t);
+            let by_shadowing =
+                facet.relative(t, sec) * shadowing.over_cosines_derivative_k1(psi, theta, t);
+            self.shadowed[i] * (by_facet + by_shadowing)
+        } else {
+            self.shadowed[i] * slope
+        }
+    }
+
+    /// Evaluates u, and its derivatives by k1, n and p where asked for, block by block. The terms
+    /// of the family are chosen here, outside the loop.
+    fn for_blocks(
+        &self,
+        at: &ModelParameters,
+        derivatives: [bool; 3],
+        rows: Range<usize>,
+        take: impl FnMut(Range<usize>, &Block),
+    ) {
+        let (k1, p) = (at.k1, at.p);
+        match self.family {
+            Family::Paper => {
+                self.for_blocks_of(Ellipsoid::new(k1), VGroove, at.n, derivatives, rows, take);
+            }
+            Family::Smith => {
+                let (facet, shadowing) = (Ellipsoid::new(k1), Smith::new(k1));
+                self.for_blocks_of(facet, shadowing, at.n, derivatives, rows, take);
+            }
+            Family::Power => {
+                self.for_blocks_of(Power::new(k1, p), VGroove, at.n, derivatives, rows, take);
+            }
+            Family::Ggx => {
+                let (facet, shadowing) = (Ggx::new(k1), Smith::new(k1));
+                self.for_blocks_of(facet, shadowing, at.n, derivatives, rows, take);
+            }
+            Family::Beckmann => {
+                self.for_blocks_of(Beckmann::new(k1), VGroove, at.n, derivatives, rows, take);
+            }
+        }
+    }
+
+    fn for_blocks_of<F: FacetDistribution, S: Shadowing>(
+        &self,
+        facet: F,
+        shadowing: S,
+        n: f64,
+        [by_k1, by_n, by_p]: [bool; 3],
+        rows: Range<usize>,
+        mut take: impl FnMut(Range<usize>, &Block),
+    ) {
+        let dielectric = Dielectric::new(n);
+        let mut block = Block {
+            y: [0.0; BLOCK],
+            a: [0.0; BLOCK],
+            u: [0.0; BLOCK],
+            by: [[0.0; BLOCK]; 3],
+        };
+        let mut fresnel = [0.0; BLOCK];
+        let mut start = rows.start;
+        while start < rows.end {
+            let end = (start + BLOCK).min(rows.end);
+            let count = end - start;
+            if count < BLOCK {
+                for column in [&mut block.y, &mut block.a, &mut block.u] {
+                    column[count..].fill(0.0);
+                }
+                block
+                    .by
+                    .iter_mut()
+                    .for_each(|column| column[count..].fill(0.0));
+            }
+            block.y[..count].copy_from_slice(&self.measured[start..end]);
+            block.a[..count].copy_from_slice(&self.diffuse[start..end]);
+            if n == self.n {
+                fresnel[..count].copy_from_slice(&self.fresnel[start..end]);
+            } else {
+                for (value, angles) in fresnel.iter_mut().zip(&self.angles[start..end]) {
+                    *value = dielectric.relative(angles.cos_gamma);
+                }
+            }
+            for (j, i) in (start..end).enumerate() {
+                block.u[j] = self.shape(facet, shadowing, i) * fresnel[j];
+            }
+            if by_k1 {
+                for (j, i) in (start..end).enumerate() {
+                    block.by[0][j] = self.shape_by_k1(facet, shadowing, i) * fresnel[j];
+                }
+            }
+            if by_n {
+                for (j, i) in (start..end).enumerate() {
+                    let angles = &self.angles[i];
+                    let slope =
+                        dielectric.relative_derivative_n(angles.cos_gamma, angles.sin2_gamma);
+                    block.by[1][j] = self.shape(facet, shadowing, i) * slope;
+                }
+            }
+            if by_p {
+                for (j, i) in (start..end).enumerate() {
+                    let angles = &self.angles[i];
+                    let slope = facet.derivative_p(angles.tan2_alpha, angles.sec_alpha);
+                    block.by[2][j] = self.shadowed[i] * slope * fresnel[j];
+                }
+            }
+            take(start..end, &block);
+            start = end;
+        }
+    }
+
+    fn with_capacity(family: Family, n: f64, readings: usize) -> Self {
         let column = || Vec::with_capacity(readings);
         Self {
+            family,
+            n,
             measured: column(),
             diffuse: column(),
-            specular: column(),
-            tan2_alpha: column(),
+            shadowed: column(),
+            fresnel: column(),
+            angles: Vec::with_capacity(readings),
+            noise: Some(column()),
+            segments: Vec::new(),
+            readings: Vec::with_capacity(readings),
             diffuse_squared: 0.0,
             diffuse_measured: 0.0,
         }
@@ -265,7 +536,7 @@ impl Criterion {
             .measured
             .iter()
             .fold(0.0_f64, |max, y| max.max(y.abs()));
-        let weighed = [&self.measured, &self.diffuse, &self.specular];
+        let weighed = [&self.measured, &self.diffuse, &self.shadowed];
         let finite = weighed.into_iter().flatten().all(|value| value.is_finite());
         if finite && largest == 0.0 {
             return Err(CriterionError::AllZero);
@@ -273,24 +544,72 @@ impl Criterion {
         if !finite || !SIZES.contains(&largest) {
             return Err(CriterionError::Size(largest));
         }
-        let norm = largest * self.sum::<4, 1>(|y, _, _, _| [(y / largest).powi(2)])[0].sqrt();
-        for column in [&mut self.measured, &mut self.diffuse, &mut self.specular] {
-            for value in column {
-                *value /= norm;
-            }
+        let squares = self.measured.iter().map(|y| (y / largest).powi(2));
+        let norm = largest * squares.sum::<f64>().sqrt();
+        let columns = [&mut self.measured, &mut self.diffuse, &mut self.shadowed];
+        for value in columns.into_iter().chain(&mut self.noise).flatten() {
+            *value /= norm;
         }
-        [self.diffuse_squared, self.diffuse_measured] =
-            self.sum::<4, 2>(|y, a, _, _| [a * a, a * y]);
+        let rows = self.diffuse.iter().zip(&self.measured);
+        (self.diffuse_squared, self.diffuse_measured) =
+            rows.fold((0.0, 0.0), |(aa, ay), (a, y)| (aa + a * a, ay + a * y));
         Ok(self)
     }
 }
 
+/// Model - measured of a block.
+fn residual(block: &Block, at: &ModelParameters) -> [f64; BLOCK] {
+    let mut residual = [0.0; BLOCK];
+    for (j, r) in residual.iter_mut().enumerate() {
+        *r = at.k2 * block.u[j] + at.kd * block.a[j] - block.y[j];
+    }
+    residual
+}
+
+/// The column of the Jacobian for a parameter, but for its factor.
+fn column(block: &Block, parameter: Parameter) -> &[f64; BLOCK] {
+    match parameter {
+        Parameter::K2 => &block.u,
+        Parameter::Kd => &block.a,
+        Parameter::K1 => &block.by[0],
+        Parameter::N => &block.by[1],
+        Parameter::P => &block.by[2],
+    }
+}
+
+/// What the column of a parameter is to be multiplied by.
+fn column_factor(at: &ModelParameters, parameter: Parameter) -> f64 {
+    match parameter {
+        Parameter::K2 | Parameter::Kd => 1.0,
+        Parameter::K1 | Parameter::N | Parameter::P => at.k2,
+    }
+}
+
+/// Which derivatives of u the free parameters need: by k1, n and p.
+fn derivatives_for(free: &[Parameter]) -> [bool; 3] {
+    [Parameter::K1, Parameter::N, Parameter::P].map(|parameter| free.contains(&parameter))
+}
+
+/// A scalar product in four running sums, which do not wait for each other; the same on every
+/// processor.
+#[inline]
+fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (x, y) in x.as_chunks::<4>().0.iter().zip(y.as_chunks::<4>().0) {
+        for lane in 0..4 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
 #[cfg(test)]
 mod tests {
-    use brdf_core::ThreeParameterBrdf;
+    use brdf_core::{AnyBrdf, Parameters, ThreeParameterBrdf};
     use proptest::prelude::*;
 
     use super::*;
+    use crate::Measurement;
     use crate::synthetic::scan;
 
     const N: f64 = 1.5;
@@ -306,8 +625,17 @@ mod tests {
         readings
     }
 
+    fn of(readings: Vec<Measurement>, weights: &Weights) -> Result<Criterion, CriterionError> {
+        let scan = Measurements::new("test", readings).unwrap();
+        Criterion::new(&scan, Family::Paper, N, weights)
+    }
+
     fn criterion(weights: &Weights) -> Criterion {
-        Criterion::new(&distorted_scan(), N, weights).unwrap()
+        of(distorted_scan(), weights).unwrap()
+    }
+
+    fn three(parameters: Parameters) -> ModelParameters {
+        ModelParameters::three(parameters, N)
     }
 
     #[test]
@@ -330,32 +658,72 @@ mod tests {
             above += g * (difference * reading.theta.cos()).powi(2);
             below += g * (reading.brdf * reading.theta.cos()).powi(2);
         }
-        let error = criterion(&weights).error(&parameters);
+        let error = criterion(&weights).error(&three(parameters));
         assert!((error / (above / below) - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn residuals_and_subsets_add_up() {
-        let parameters = Parameters::new(0.2, 0.15, 0.3).unwrap();
+        let at = three(Parameters::new(0.2, 0.15, 0.3).unwrap());
         let criterion = criterion(&Weights::default());
-        let sum: f64 = criterion.residuals(&parameters).map(|(r, _)| r * r).sum();
-        assert!((sum / criterion.error(&parameters) - 1.0).abs() < 1e-12);
+        let residuals = criterion.residuals(&at);
+        let sum: f64 = residuals.iter().map(|(r, _)| r * r).sum();
+        assert!((sum / criterion.error(&at) - 1.0).abs() < 1e-12);
         let some = criterion.subset(|i| i % 3 == 0).unwrap();
         let (mut above, mut below) = (0.0, 0.0);
-        for (r, y) in criterion.residuals(&parameters).step_by(3) {
-            above += r * r;
-            below += y * y;
+        for segment in criterion.segments().iter().step_by(3) {
+            for (r, y) in &residuals[segment.rows.clone()] {
+                above += r * r;
+                below += y * y;
+            }
         }
-        assert!((some.error(&parameters) / (above / below) - 1.0).abs() < 1e-12);
+        assert!((some.error(&at) / (above / below) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_factor_on_a_weight_is_like_repeated_readings() {
+        let at = three(Parameters::new(0.2, 0.15, 0.3).unwrap());
+        let once = criterion(&Weights::default());
+        let twice = once.reweighted(|i| if i < 20 { 2.0 } else { 1.0 }).unwrap();
+        let mut readings = distorted_scan();
+        let repeated: Vec<Measurement> =
+            once.readings()[..20].iter().map(|&i| readings[i]).collect();
+        readings.extend(repeated);
+        let expected = of(readings, &Weights::default()).unwrap().error(&at);
+        assert!((twice.error(&at) / expected - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_family_has_the_residuals_of_its_brdf() {
+        let at = ModelParameters {
+            k2: 0.2,
+            kd: 0.15,
+            k1: 0.3,
+            n: 1.8,
+            p: 1.4,
+        };
+        let scan = Measurements::new("test", distorted_scan()).unwrap();
+        for family in Family::ALL {
+            // Neither with the index of the criterion nor with another one.
+            for n in [1.8, 1.5] {
+                let criterion = Criterion::new(&scan, family, n, &Weights::default()).unwrap();
+                let brdf = AnyBrdf::new(family, &at).unwrap();
+                let rows = criterion.residuals(&at);
+                for (&i, (r, y)) in criterion.readings().iter().zip(rows) {
+                    let reading = &scan.readings()[i];
+                    let ratio = brdf.value(&reading.geometry().unwrap()) / reading.brdf;
+                    assert!(((r + y) / y - ratio).abs() < 1e-12 * ratio.abs());
+                }
+            }
+        }
     }
 
     #[test]
     fn readings_without_any_weight_are_an_error() {
         let mut readings = distorted_scan();
         let g1 = "0=0".parse().unwrap();
-        let weightless = Criterion::new(
-            &readings,
-            N,
+        let weightless = of(
+            readings.clone(),
             &Weights {
                 g1,
                 ..Weights::default()
@@ -368,7 +736,7 @@ mod tests {
             ..Weights::default()
         };
         assert_eq!(
-            Criterion::new(&readings, N, &by_sigma).unwrap_err(),
+            of(readings, &by_sigma).unwrap_err(),
             CriterionError::NoSigma
         );
     }
@@ -380,7 +748,7 @@ mod tests {
             for reading in &mut readings {
                 reading.brdf *= size;
             }
-            let error = Criterion::new(&readings, N, &Weights::default()).unwrap_err();
+            let error = of(readings, &Weights::default()).unwrap_err();
             assert!(
                 error.to_string().contains("expected one between"),
                 "{error}"
@@ -391,33 +759,39 @@ mod tests {
     proptest! {
         #[test]
         fn derivatives_agree_with_finite_differences(
-            k2 in 0.01..2.0, kd in 0.01..1.0, log_k1 in -4.0..1.5_f64,
+            k2 in 0.01..2.0, kd in 0.01..1.0, log_k1 in -4.0..1.5_f64, n in 1.1..5.0, p in 0.3..5.0,
         ) {
-            let criterion = criterion(&Weights::default());
-            let at = [k2, kd, log_k1.exp()];
-            let parameters = |[k2, kd, k1]: [f64; 3]| Parameters { k2, kd, k1 };
-            let equations = criterion.normal_equations(&parameters(at));
-            prop_assert!((equations.error / criterion.error(&parameters(at)) - 1.0).abs() < 1e-12);
+            let scan = Measurements::new("test", distorted_scan()).unwrap();
+            let at = [k2, kd, log_k1.exp(), n, p];
+            let parameters = |x: [f64; 5]| ModelParameters { k2: x[0], kd: x[1], k1: x[2], n: x[3], p: x[4] };
+            for family in Family::ALL {
+                let criterion = Criterion::new(&scan, family, N, &Weights::default()).unwrap();
+                let equations = criterion.normal_equations(&parameters(at), &Parameter::ALL);
+                prop_assert!((equations.error / criterion.error(&parameters(at)) - 1.0).abs() < 1e-12);
 
-            // Columns of the Jacobian by differences, and with them J^T r and J^T J.
-            let residuals = |at| criterion.residuals(&parameters(at)).map(|(r, _)| r).collect::<Vec<_>>();
-            let columns: Vec<Vec<f64>> = (0..3).map(|j| {
-                let step = 1e-6 * at[j];
-                let moved = |sign: f64| { let mut moved = at; moved[j] += sign * step; residuals(moved) };
-                moved(1.0).iter().zip(moved(-1.0)).map(|(up, down)| (up - down) / (2.0 * step)).collect()
-            }).collect();
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let length = |j: usize| dot(&columns[j], &columns[j]).sqrt();
-            let r = residuals(at);
-            for i in 0..3 {
-                let gradient = dot(&columns[i], &r);
-                let scale = length(i) * dot(&r, &r).sqrt();
-                prop_assert!((equations.gradient[i] - gradient).abs() < 1e-7 * scale);
-                for j in 0..3 {
-                    let product = dot(&columns[i], &columns[j]);
-                    let error = (equations.matrix[(i, j)] - product).abs();
-                    prop_assert!(error < 1e-7 * length(i) * length(j));
+                // Columns of the Jacobian by differences, and with them J^T r and J^T J.
+                let residuals = |at| criterion.residuals(&parameters(at)).iter().map(|(r, _)| *r).collect::<Vec<_>>();
+                let columns: Vec<Vec<f64>> = (0..5).map(|j| {
+                    let step = 1e-5 * at[j];
+                    let moved = |sign: f64| { let mut moved = at; moved[j] += sign * step; residuals(moved) };
+                    moved(1.0).iter().zip(moved(-1.0)).map(|(up, down)| (up - down) / (2.0 * step)).collect()
+                }).collect();
+                let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                let size = columns.iter().map(|c| dot(c, c)).fold(0.0, f64::max).sqrt();
+                let r = residuals(at);
+                for i in 0..5 {
+                    let gradient = dot(&columns[i], &r);
+                    let scale = size * dot(&r, &r).sqrt();
+                    prop_assert!((equations.gradient[i] - gradient).abs() < 1e-6 * scale, "{family:?}");
+                    for j in 0..5 {
+                        let product = dot(&columns[i], &columns[j]);
+                        let error = (equations.matrix[(i, j)] - product).abs();
+                        prop_assert!(error < 1e-6 * size * size, "{family:?}");
+                    }
                 }
+                let jacobian = criterion.jacobian(&parameters(at), &Parameter::ALL);
+                let difference = jacobian.transpose() * &jacobian - equations.matrix;
+                prop_assert!(difference.norm() < 1e-12 * equations.matrix.norm());
             }
         }
     }

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, ProfileSums};
 use crate::measurement::{Incidence, Measurement};
-use crate::profile::{Profile, solve};
-use crate::solver::K1_RANGE;
+use crate::model::{K1_RANGE, Model};
+use crate::profile::{Search, solve};
 
 /// Two readings that bracket the mirror direction are interpolated if they are no farther apart
 /// than this, in radians (10 deg): the step of a usual scan, and then some.
@@ -135,6 +135,7 @@ fn interpolate(left: (f64, f64), right: (f64, f64), x: f64) -> f64 {
 }
 
 /// The initial values for the readings of some incidences, with the criterion over the same ones.
+/// They are those of the paper's model, whichever family the criterion is of.
 pub(crate) fn initial_values(
     readings: &[Measurement],
     incidences: &[Incidence],
@@ -147,9 +148,9 @@ pub(crate) fn initial_values(
         .map(|incidence| Section::new(incidence, readings))
         .collect();
     let Some((k2, kd, weights)) = weights_of_mirror_readings(&sections, &fresnel) else {
-        let point = Profile::search(criterion).lowest_point();
+        let point = Search::new(criterion, Model::Three).whole().lowest();
         return InitialValues {
-            parameters: point.parameters,
+            parameters: point.parameters.parameters(),
             weights: Some(WeightsRoute::WholeScan),
             width: Some(WidthRoute::WholeScan),
         };
@@ -157,7 +158,11 @@ pub(crate) fn initial_values(
     let (k1, width) = match width_at_half_height(&sections, &fresnel, k2, kd) {
         Some(k1) => (k1, WidthRoute::HalfHeight),
         None => (
-            Profile::search(criterion).lowest_point().parameters.k1,
+            Search::new(criterion, Model::Three)
+                .whole()
+                .lowest()
+                .parameters
+                .k1,
             WidthRoute::WholeScan,
         ),
     };
@@ -275,7 +280,8 @@ mod tests {
 
     fn initial(readings: Vec<Measurement>) -> InitialValues {
         let scan = Measurements::new("test", readings).unwrap();
-        let criterion = Criterion::new(scan.readings(), 1.5, &Weights::default()).unwrap();
+        let family = brdf_core::Family::Paper;
+        let criterion = Criterion::new(&scan, family, 1.5, &Weights::default()).unwrap();
         initial_values(scan.readings(), &scan.incidences(), 1.5, &criterion)
     }
 

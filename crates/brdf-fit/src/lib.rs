@@ -29,6 +29,7 @@
 pub mod criterion;
 pub mod initial;
 pub mod measurement;
+pub mod model;
 pub mod output;
 pub mod profile;
 pub mod read;

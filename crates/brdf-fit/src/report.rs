@@ -4,11 +4,12 @@
 use std::fmt::Write as _;
 use std::io;
 
-use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+use brdf_core::{AnyBrdf, Geometry, ModelParameters, Parameters};
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::{Measurements, Metadata};
-use crate::solver::{Ending, K1_RANGE};
+use crate::model::K1_RANGE;
+use crate::solver::Ending;
 use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, OwnAndAll, Stage, fit};
 use crate::warning::{Warning, warnings};
 use crate::words::{counted, in_degrees};
@@ -138,7 +139,7 @@ impl Report {
         ];
         record.extend(of(parameters));
         record.push(number(fit.map(|fit| fit.e_percent)));
-        record.extend(of(stage1.map(|stage| stage.parameters)));
+        record.extend(of(stage1.map(|stage| stage.parameters.parameters())));
         record.push(number(stage1.map(|stage| stage.e_percent.own)));
         record.push(self.status());
         record
@@ -222,16 +223,18 @@ fn write_curves_of(
     fit: &Fit,
     csv: &mut csv::Writer<impl io::Write>,
 ) -> io::Result<()> {
-    let model = |parameters| {
-        ThreeParameterBrdf::new(parameters, fit.n)
-            .map_err(|error| io::Error::other(error.to_string()))
+    let model = |at: ModelParameters| {
+        AnyBrdf::new(fit.model().family(), &at).map_err(|error| io::Error::other(error.to_string()))
     };
-    let initial = model(fit.initial.parameters)?;
+    let initial = model(ModelParameters {
+        p: 1.0,
+        ..ModelParameters::three(fit.initial.parameters, fit.n)
+    })?;
     let stage1 = fit
         .stage1
         .map(|stage| model(stage.parameters))
         .transpose()?;
-    let last = model(fit.parameters)?;
+    let last = model(fit.at())?;
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
     let degrees = |angle: f64| in_degrees(angle).to_string();
     for incidence in measurements.incidences() {
@@ -247,7 +250,7 @@ fn write_curves_of(
             let geometry = reading
                 .geometry()
                 .map_err(|error| io::Error::other(error.to_string()))?;
-            let theory = |brdf: &ThreeParameterBrdf, at: &Geometry| brdf.value(at).to_string();
+            let theory = |brdf: &AnyBrdf, at: &Geometry| brdf.value(at).to_string();
             csv.write_record([
                 measurements.source.clone(),
                 number(fit.wavelength_um),
@@ -301,15 +304,20 @@ fn stage_table(fit: &Fit) -> String {
         "",
     );
     if let Some(stage) = &fit.stage1 {
-        line("stage 1", &stage.parameters, stage.e_percent, &work(stage));
+        line(
+            "stage 1",
+            &stage.parameters.parameters(),
+            stage.e_percent,
+            &work(stage),
+        );
     }
     line(
         "stage 2",
-        &fit.stage2.parameters,
+        &fit.stage2.parameters.parameters(),
         fit.stage2.e_percent,
         &work(&fit.stage2),
     );
-    if fit.parameters != fit.stage2.parameters {
+    if fit.at() != fit.stage2.parameters {
         let both = OwnAndAll {
             own: fit.e_percent,
             all: fit.e_percent,

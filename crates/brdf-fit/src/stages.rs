@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
-use brdf_core::Parameters;
+use brdf_core::{ModelParameters, Parameters};
 use serde::{Deserialize, Serialize};
 
-use crate::criterion::{Criterion, CriterionError};
+use crate::criterion::{Criterion, CriterionError, Segment};
 use crate::initial::{InitialValues, initial_values};
 use crate::measurement::{Incidence, Measurements};
-use crate::profile::{Profile, ProfilePoint};
+use crate::model::{Model, Parameter, USUAL_N};
+use crate::profile::{ProfilePoint, Search};
 use crate::refractive_index::RefractiveIndex;
 use crate::solver::{Ending, Method, minimise};
 use crate::weights::Weights;
@@ -17,9 +18,6 @@ use crate::words::{as_degrees, counted, in_degrees};
 /// Version of the JSON that [`Fit`] is written as.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// The three parameters need at least one reading more.
-pub const FEWEST_READINGS: usize = 4;
-
 /// A minimum counts as lower when E there is lower by more than this fraction: below it, two ways
 /// of summing the same minimum differ.
 const LOWER: f64 = 1e-9;
@@ -27,15 +25,22 @@ const LOWER: f64 = 1e-9;
 /// E below which it is nothing but rounding, as a fraction.
 const ROUNDING: f64 = 1e-20;
 
+/// Far more iterations than Levenberg-Marquardt takes from a point of the search.
+const POLISH_ITERATIONS: u64 = 1000;
+
 /// Settings of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FitOptions {
-    /// Refractive index; `None` takes what the measurements state.
+    /// The model.
+    #[serde(default)]
+    pub model: Model,
+    /// Refractive index; `None` takes what the measurements state. Where the model has n free, the
+    /// fit starts there, or from [`USUAL_N`](crate::model::USUAL_N) where nobody states one.
     pub refractive_index: Option<RefractiveIndex>,
     /// Weights of the readings in E.
     pub weights: Weights,
     /// Where the first stage starts; `None` takes the paper's initial values.
-    pub start: Option<Parameters>,
+    pub start: Option<ModelParameters>,
     /// Method of stage 1; `None` leaves the stage out.
     pub stage1: Option<Method>,
     /// Largest incidence angle of stage 1, in radians (in JSON in degrees, `stage1_limit_deg`).
@@ -55,6 +60,7 @@ pub struct FitOptions {
 impl Default for FitOptions {
     fn default() -> Self {
         Self {
+            model: Model::Three,
             refractive_index: None,
             weights: Weights::default(),
             start: None,
@@ -74,8 +80,11 @@ pub struct Fit {
     pub format_version: u32,
     /// Wavelength in micrometres, where the scan states one.
     pub wavelength_um: Option<f64>,
-    /// Refractive index of the coating.
+    /// Refractive index of the coating: as given, or as fitted where the model has it free.
     pub n: f64,
+    /// Exponent of the facet distribution; 1 where the model has none.
+    #[serde(default = "one")]
+    pub p: f64,
     /// The settings of the fit.
     pub options: FitOptions,
     /// How many readings were fitted.
@@ -119,7 +128,7 @@ pub struct Stage {
     /// Its method.
     pub method: Method,
     /// Where it ended.
-    pub parameters: Parameters,
+    pub parameters: ModelParameters,
     /// E there.
     pub e_percent: OwnAndAll,
     /// How many readings it used.
@@ -152,8 +161,11 @@ pub struct GlobalCheck {
     pub lower_minimum_taken: bool,
     /// E of stage 2 before, in percent.
     pub stage2_e_percent: f64,
-    /// The profile: the lowest E at each k1.
+    /// The profile over k1: the lowest E at each; a single point where the model has no k1.
     pub profile: Vec<ProfilePoint>,
+    /// The profile over n, where the model has it free.
+    #[serde(default)]
+    pub profile_n: Vec<ProfilePoint>,
     /// Its time in seconds.
     pub seconds: f64,
 }
@@ -171,9 +183,17 @@ pub enum FitError {
         at_wavelength(*.0)
     )]
     NoRefractiveIndex(Option<f64>),
-    /// Fewer readings than [`FEWEST_READINGS`].
-    #[error("{}: three parameters need at least {FEWEST_READINGS}", counted(*.0, "reading"))]
-    TooFewReadings(usize),
+    /// No more readings than free parameters.
+    #[error(
+        "{}: {} need at least {}", counted(*.count, "reading"),
+        counted(*.parameters, "free parameter"), .parameters + 1
+    )]
+    TooFewReadings {
+        /// How many there are.
+        count: usize,
+        /// How many parameters the model has free.
+        parameters: usize,
+    },
     /// All readings have one value.
     #[error(
         "all {count} readings are {value} 1/sr: such data are kD = pi times that, and say nothing \
@@ -207,45 +227,87 @@ fn at_wavelength(wavelength_um: Option<f64>) -> String {
     wavelength_um.map_or_else(String::new, |w| format!(" at {w} um"))
 }
 
-/// Fits the three parameters to a scan of one wavelength: initial values, stage 1 over the
-/// incidences up to the limit, stage 2 over all, and the check against the global optimum.
+fn one() -> f64 {
+    1.0
+}
+
+impl Fit {
+    /// All parameters of the model.
+    pub fn at(&self) -> ModelParameters {
+        ModelParameters {
+            p: self.p,
+            ..ModelParameters::three(self.parameters, self.n)
+        }
+    }
+
+    /// The model.
+    pub fn model(&self) -> Model {
+        self.options.model
+    }
+
+    /// Readings that have a say, less the free parameters.
+    pub fn degrees_of_freedom(&self) -> usize {
+        (self.readings - self.weightless).saturating_sub(self.model().free().len())
+    }
+}
+
+/// Fits a model to a scan of one wavelength: initial values, stage 1 over the incidences up to the
+/// limit, stage 2 over all, and the check against the global optimum.
 ///
 /// The result is the same in every run, but for the times.
 pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, FitError> {
+    fit_with_criterion(measurements, options).map(|(fit, _)| fit)
+}
+
+/// [`fit`], and the criterion over all readings that it minimised.
+pub(crate) fn fit_with_criterion(
+    measurements: &Measurements,
+    options: &FitOptions,
+) -> Result<(Fit, Criterion), FitError> {
     let started = Instant::now();
     let readings = measurements.readings();
     let wavelength_um = single_wavelength(measurements)?;
-    check_readings(measurements)?;
-    let n = options
-        .refractive_index
-        .as_ref()
-        .or(measurements.refractive_index.as_ref())
-        .and_then(|index| index.at(wavelength_um))
-        .ok_or(FitError::NoRefractiveIndex(wavelength_um))?;
+    let model = options.model;
+    check_readings(measurements, model)?;
+    let n = refractive_index(measurements, options, wavelength_um)?;
 
-    let all = Criterion::new(readings, n, &options.weights)?;
+    let all = Criterion::new(measurements, model.family(), n, &options.weights)?;
     let weightless = all.weightless();
-    if readings.len() - weightless < FEWEST_READINGS {
-        return Err(FitError::TooFewReadings(readings.len() - weightless));
+    if readings.len() - weightless <= model.free().len() {
+        return Err(too_few(readings.len() - weightless, model));
     }
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
     let own = first.criterion.as_ref().unwrap_or(&all);
-    let initial = match options.start {
-        Some(parameters) => InitialValues {
-            parameters,
-            weights: None,
-            width: None,
-        },
-        None => initial_values(readings, first.incidences, n, own),
+    let (initial, start) = match options.start {
+        Some(start) => {
+            let initial = InitialValues {
+                parameters: start.parameters(),
+                weights: None,
+                width: None,
+            };
+            (initial, start)
+        }
+        None => {
+            let initial = initial_values(readings, first.incidences, n, own);
+            (initial, ModelParameters::three(initial.parameters, n))
+        }
     };
+    let start = model.start(ModelParameters {
+        n: if model.frees(Parameter::N) {
+            start.n
+        } else {
+            n
+        },
+        ..start
+    });
 
     let stage1 = match (options.stage1, &first.left_out) {
-        (Some(method), None) => Some(run(method, own, &all, initial.parameters, options)?),
+        (Some(method), None) => Some(run(method, own, &all, start, options)?),
         _ => None,
     };
-    let start = stage1.map_or(initial.parameters, |stage| stage.parameters);
-    let stage2 = run(options.stage2, &all, &all, start, options)?;
+    let stage2_start = stage1.map_or(start, |stage| stage.parameters);
+    let stage2 = run(options.stage2, &all, &all, stage2_start, options)?;
     let mut parameters = stage2.parameters;
     let mut global_check = None;
     if options.global_check {
@@ -254,24 +316,51 @@ pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, Fit
         global_check = Some(check.1);
     }
 
-    Ok(Fit {
+    let fit = Fit {
         format_version: FORMAT_VERSION,
         wavelength_um,
-        n,
+        n: parameters.n,
+        p: parameters.p,
         options: options.clone(),
         readings: readings.len(),
         weightless,
-        parameters,
+        parameters: parameters.parameters(),
         e_percent: 100.0 * all.error(&parameters),
-        incidences: errors_by_incidence(&all, &incidences, &parameters),
-        initial_e_percent: own_and_all(own, &all, &initial.parameters),
+        incidences: errors_by_incidence(&all, &parameters),
+        initial_e_percent: own_and_all(own, &all, &start),
         initial,
         stage1,
         stage1_left_out: first.left_out,
         stage2,
         global_check,
         seconds: started.elapsed().as_secs_f64(),
-    })
+    };
+    Ok((fit, all))
+}
+
+/// The refractive index that the options or the measurements state, or the usual one where it is
+/// only a start.
+fn refractive_index(
+    measurements: &Measurements,
+    options: &FitOptions,
+    wavelength_um: Option<f64>,
+) -> Result<f64, FitError> {
+    let stated = options
+        .refractive_index
+        .as_ref()
+        .or(measurements.refractive_index.as_ref())
+        .and_then(|index| index.at(wavelength_um));
+    let usual = options.model.frees(Parameter::N).then_some(USUAL_N);
+    stated
+        .or(usual)
+        .ok_or(FitError::NoRefractiveIndex(wavelength_um))
+}
+
+fn too_few(count: usize, model: Model) -> FitError {
+    FitError::TooFewReadings {
+        count,
+        parameters: model.free().len(),
+    }
 }
 
 fn single_wavelength(measurements: &Measurements) -> Result<Option<f64>, FitError> {
@@ -282,10 +371,10 @@ fn single_wavelength(measurements: &Measurements) -> Result<Option<f64>, FitErro
     }
 }
 
-fn check_readings(measurements: &Measurements) -> Result<(), FitError> {
+fn check_readings(measurements: &Measurements, model: Model) -> Result<(), FitError> {
     let readings = measurements.readings();
-    if readings.len() < FEWEST_READINGS {
-        return Err(FitError::TooFewReadings(readings.len()));
+    if readings.len() <= model.free().len() {
+        return Err(too_few(readings.len(), model));
     }
     let value = readings[0].brdf;
     if value != 0.0 && readings.iter().all(|reading| reading.brdf == value) {
@@ -311,12 +400,10 @@ impl<'a> FirstStage<'a> {
         let limit = options.stage1_limit + 1e-9;
         let count = incidences.partition_point(|incidence| incidence.psi <= limit);
         let chosen = &incidences[..count];
-        let mut inside = vec![false; all.len()];
-        chosen
+        let readings: usize = chosen
             .iter()
-            .flat_map(|i| &i.readings)
-            .for_each(|&i| inside[i] = true);
-        let readings = inside.iter().filter(|&&is_inside| is_inside).count();
+            .map(|incidence| incidence.readings.len())
+            .sum();
         let everything = |left_out| Self {
             incidences,
             criterion: None,
@@ -325,12 +412,12 @@ impl<'a> FirstStage<'a> {
         if options.stage1.is_none() || readings == all.len() {
             return everything(None);
         }
-        if readings < FEWEST_READINGS {
+        if readings <= options.model.free().len() {
             let limit_deg = in_degrees(options.stage1_limit);
             let count = counted(readings, "reading");
             return everything(Some(format!("{count} up to {limit_deg} deg")));
         }
-        match all.subset(|i| inside[i]) {
+        match all.subset(|i| i < count) {
             Ok(criterion) => Self {
                 incidences: chosen,
                 criterion: Some(criterion),
@@ -345,11 +432,12 @@ fn run(
     method: Method,
     own: &Criterion,
     all: &Criterion,
-    start: Parameters,
+    start: ModelParameters,
     options: &FitOptions,
 ) -> Result<Stage, FitError> {
     let started = Instant::now();
-    let minimum = minimise(own, method, start, options.max_iterations)
+    let free = options.model.free();
+    let minimum = minimise(own, method, start, free, options.max_iterations)
         .map_err(|error| FitError::Solver(error.to_string()))?;
     Ok(Stage {
         method,
@@ -363,65 +451,74 @@ fn run(
     })
 }
 
-fn own_and_all(own: &Criterion, all: &Criterion, parameters: &Parameters) -> OwnAndAll {
+fn own_and_all(own: &Criterion, all: &Criterion, parameters: &ModelParameters) -> OwnAndAll {
     OwnAndAll {
         own: 100.0 * own.error(parameters),
         all: 100.0 * all.error(parameters),
     }
 }
 
-/// Looks for a minimum below that of stage 2, and polishes it where there is one.
+/// The minimum next to a point, whatever the options say of methods and iterations.
+pub(crate) fn polish(
+    criterion: &Criterion,
+    from: ModelParameters,
+    free: &[Parameter],
+) -> Result<ModelParameters, FitError> {
+    let method = Method::LevenbergMarquardt;
+    minimise(criterion, method, from, free, POLISH_ITERATIONS)
+        .map(|minimum| minimum.parameters)
+        .map_err(|error| FitError::Solver(error.to_string()))
+}
+
+/// Looks for a minimum below that of stage 2, and takes it where there is one.
 fn check_globally(
     all: &Criterion,
     stage2: Stage,
     options: &FitOptions,
-) -> Result<(Parameters, GlobalCheck), FitError> {
+) -> Result<(ModelParameters, GlobalCheck), FitError> {
     let started = Instant::now();
-    let profile = Profile::search(all);
-    let lowest = profile.global_minimum(all).parameters;
+    let search = Search::new(all, options.model);
+    let profile = search.whole();
     let mut parameters = stage2.parameters;
-    let is_lower = |candidate: &Parameters, best: &Parameters| {
-        all.error(candidate) < all.error(best) * (1.0 - LOWER) - ROUNDING
-    };
-    let lower_minimum_taken = is_lower(&lowest, &parameters);
-    if lower_minimum_taken {
-        let polished = run(Method::LevenbergMarquardt, all, all, lowest, options)?.parameters;
-        parameters = if all.error(&polished) <= all.error(&lowest) {
-            polished
-        } else {
-            lowest
-        };
+    for minimum in profile.minima() {
+        // The minimum that was found is in this valley, and not above its grid point.
+        let here = all.error(&parameters);
+        if profile.is_next_to(&minimum, &parameters) && here <= all.error(&minimum.parameters) {
+            continue;
+        }
+        let polished = polish(all, minimum.parameters, options.model.free())?;
+        if all.error(&polished) < here * (1.0 - LOWER) - ROUNDING {
+            parameters = polished;
+        }
     }
+    let several_n = options.model.frees(Parameter::N);
     let check = GlobalCheck {
-        lower_minimum_taken,
+        lower_minimum_taken: parameters != stage2.parameters,
         stage2_e_percent: stage2.e_percent.all,
-        profile: profile.points,
+        profile: profile.along(Parameter::K1),
+        profile_n: several_n
+            .then(|| profile.along(Parameter::N))
+            .unwrap_or_default(),
         seconds: started.elapsed().as_secs_f64(),
     };
     Ok((parameters, check))
 }
 
-fn errors_by_incidence(
-    all: &Criterion,
-    incidences: &[Incidence],
-    parameters: &Parameters,
-) -> Vec<IncidenceError> {
-    let residuals: Vec<(f64, f64)> = all.residuals(parameters).collect();
-    incidences
-        .iter()
-        .map(|incidence| {
-            let (mut above, mut below) = (0.0, 0.0);
-            for &i in &incidence.readings {
-                above += residuals[i].0 * residuals[i].0;
-                below += residuals[i].1 * residuals[i].1;
-            }
-            IncidenceError {
-                psi_deg: in_degrees(incidence.psi),
-                readings: incidence.readings.len(),
-                e_percent: (below > 0.0).then(|| 100.0 * above / below),
-            }
-        })
-        .collect()
+pub(crate) fn errors_by_incidence(all: &Criterion, at: &ModelParameters) -> Vec<IncidenceError> {
+    let residuals = all.residuals(at);
+    let error = |segment: &Segment| {
+        let (mut above, mut below) = (0.0, 0.0);
+        for (r, y) in &residuals[segment.rows.clone()] {
+            above += r * r;
+            below += y * y;
+        }
+        IncidenceError {
+            psi_deg: in_degrees(segment.psi),
+            readings: segment.rows.len(),
+            e_percent: (below > 0.0).then(|| 100.0 * above / below),
+        }
+    };
+    all.segments().iter().map(error).collect()
 }
 
 #[cfg(test)]
@@ -474,7 +571,7 @@ mod tests {
 
     #[test]
     fn a_given_start_is_where_the_first_stage_starts() {
-        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
+        let start = ModelParameters::three(Parameters::new(1.0, 1.0, 1.0).unwrap(), 1.5);
         let fit = fit(
             &scan(truth(), 1.5),
             &FitOptions {
@@ -483,14 +580,17 @@ mod tests {
             },
         )
         .unwrap();
-        assert_eq!(fit.initial.parameters, start);
+        assert_eq!(fit.initial.parameters, start.parameters());
         assert_eq!(fit.initial.weights, None);
     }
 
     #[test]
     fn a_minimum_that_stage_2_missed_is_taken() {
         let hurried = FitOptions {
-            start: Some(Parameters::new(1.0, 1.0, 1.0).unwrap()),
+            start: Some(ModelParameters::three(
+                Parameters::new(1.0, 1.0, 1.0).unwrap(),
+                1.5,
+            )),
             max_iterations: 1,
             ..options()
         };

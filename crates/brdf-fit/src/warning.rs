@@ -3,13 +3,14 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-use brdf_core::{Parameters, ThreeParameterBrdf};
+use brdf_core::{AnyBrdf, Parameters};
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, NormalEquations};
 use crate::measurement::{Measurement, Measurements};
-use crate::profile::{Profile, ProfilePoint};
-use crate::solver::{Ending, K1_RANGE};
+use crate::model::{K1_RANGE, Model, Parameter};
+use crate::profile::{ProfilePoint, Search};
+use crate::solver::Ending;
 use crate::stages::Fit;
 use crate::words::counted;
 
@@ -176,8 +177,13 @@ pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
             e_percent: fit.e_percent,
         });
     }
-    if let Ok(criterion) = Criterion::new(readings, fit.n, &fit.options.weights) {
-        warnings.extend(turned_round(readings, fit));
+    if let Ok(criterion) = Criterion::new(
+        measurements,
+        fit.model().family(),
+        fit.n,
+        &fit.options.weights,
+    ) {
+        warnings.extend(turned_round(measurements, fit));
         warnings.extend(not_determined(&criterion, fit));
     }
     warnings.extend(reflectance_above_one(fit));
@@ -186,25 +192,28 @@ pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
     warnings
 }
 
-fn turned_round(readings: &[Measurement], fit: &Fit) -> Option<Warning> {
+fn turned_round(measurements: &Measurements, fit: &Fit) -> Option<Warning> {
     if fit.e_percent <= FITS_WELL_PERCENT {
         return None;
     }
-    let turned: Vec<Measurement> = readings
+    let turned: Vec<Measurement> = measurements
+        .readings()
         .iter()
         .map(|r| Measurement {
             theta: -r.theta,
             ..*r
         })
         .collect();
-    let criterion = Criterion::new(&turned, fit.n, &fit.options.weights).ok()?;
-    let lowest = Profile::search(&criterion).global_minimum(&criterion);
-    let e_percent = 100.0 * criterion.error(&lowest.parameters);
+    let turned = Measurements::new("", turned).ok()?;
+    // The paper's model at this n tells the sides apart as well as any.
+    let (family, weights) = (Model::Three.family(), &fit.options.weights);
+    let criterion = Criterion::new(&turned, family, fit.n, weights).ok()?;
+    let e_percent = 100.0 * Search::new(&criterion, Model::Three).whole().lowest().error;
     (e_percent < TURNED_GAIN * fit.e_percent).then_some(Warning::TurnedRound { e_percent })
 }
 
 fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
-    let brdf = ThreeParameterBrdf::new(fit.parameters, fit.n).ok()?;
+    let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;
     let psi_deg = brdf.energy_violation_angle()?.to_degrees();
     Some(Warning::ReflectanceAboveOne { psi_deg })
 }
@@ -285,20 +294,16 @@ fn not_determined(criterion: &Criterion, fit: &Fit) -> Vec<Warning> {
         .as_ref()
         .map(|check| check.profile.as_slice());
     warnings.extend(profile.and_then(|profile| width_not_determined(profile, fit)));
-    let equations = criterion.normal_equations(&parameters);
+    let free = [Parameter::K2, Parameter::Kd, Parameter::K1];
+    let equations = criterion.normal_equations(&fit.at(), &free);
     warnings.extend(weights_not_determined(&equations, criterion, fit));
     warnings
-}
-
-/// Readings that have a say, less the three parameters.
-fn degrees_of_freedom(fit: &Fit) -> f64 {
-    (fit.readings - fit.weightless - 3) as f64
 }
 
 /// The interval of k1 in which E stays below its minimum times 1 + chi^2/(N - 3): where it reaches
 /// the end of the search, k1 has no limit on that side.
 fn width_not_determined(profile: &[ProfilePoint], fit: &Fit) -> Option<Warning> {
-    let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / degrees_of_freedom(fit));
+    let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / fit.degrees_of_freedom() as f64);
     let k1 = fit.parameters.k1;
     let inside = |point: &&ProfilePoint| point.error <= limit;
     let below = profile
@@ -334,7 +339,7 @@ fn weights_not_determined(
     fit: &Fit,
 ) -> Vec<Warning> {
     let Parameters { k2, kd, .. } = fit.parameters;
-    let variance = equations.error / degrees_of_freedom(fit);
+    let variance = equations.error / fit.degrees_of_freedom() as f64;
     let Some(inverse) = equations.matrix.try_inverse() else {
         return vec![Warning::WeightNotDetermined {
             weight: "k2 and kD".to_owned(),

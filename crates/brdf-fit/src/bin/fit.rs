@@ -134,6 +134,7 @@ impl Arguments {
                 g1: self.g1.clone().unwrap_or_default(),
                 g2: self.g2.clone().unwrap_or_default(),
                 by_sigma: matches!(self.weights, ReadingWeights::Sigma),
+                ..Weights::default()
             },
             stage1: method(&self.stage1),
             stage1_limit: self.stage1_limit.to_radians(),

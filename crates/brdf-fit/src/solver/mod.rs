@@ -7,17 +7,14 @@ use std::fmt;
 use std::str::FromStr;
 
 use argmin::core::{CostFunction, Error, Executor, State};
-use brdf_core::Parameters;
-use nalgebra::Vector3;
+use brdf_core::ModelParameters;
+use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, NormalEquations};
+use crate::model::Parameter;
 use levenberg_marquardt::{LeastSquares, LevenbergMarquardt};
 use nelder_mead::{NelderMead, Unbounded};
-
-/// The range of k1 in a fit. Far below the resolution of any goniometer at one end; at the other
-/// the facet distribution no longer changes (its limit is sec alpha).
-pub const K1_RANGE: (f64, f64) = (1e-6, 1e3);
 
 /// How a stage minimises E.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -94,7 +91,7 @@ impl fmt::Display for Ending {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Minimum {
     /// Where it ended.
-    pub parameters: Parameters,
+    pub parameters: ModelParameters,
     /// E there.
     pub error: f64,
     /// Its iterations.
@@ -105,18 +102,35 @@ pub struct Minimum {
     pub ending: Ending,
 }
 
-/// Minimises E from a starting point, within k2 >= 0, kD >= 0 and [`K1_RANGE`].
+/// Minimises E over the free parameters from a starting point, each within its
+/// [range](Parameter::range); the others stay as they are.
 pub fn minimise(
     criterion: &Criterion,
     method: Method,
-    start: Parameters,
+    start: ModelParameters,
+    free: &[Parameter],
     max_iterations: u64,
 ) -> Result<Minimum, Error> {
-    let found = match method {
-        Method::NelderMead => by_nelder_mead(criterion, start, max_iterations)?,
-        Method::LevenbergMarquardt => by_levenberg_marquardt(criterion, start, max_iterations)?,
+    // The number of free parameters is known to the compiler from here on.
+    let found = match *free {
+        [] => Minimum {
+            parameters: start,
+            error: criterion.error(&start),
+            iterations: 0,
+            evaluations: 1,
+            ending: Ending::GradientZero,
+        },
+        [a] => Problem::new(criterion, start, [a]).minimise(method, max_iterations)?,
+        [a, b] => Problem::new(criterion, start, [a, b]).minimise(method, max_iterations)?,
+        [a, b, c] => Problem::new(criterion, start, [a, b, c]).minimise(method, max_iterations)?,
+        [a, b, c, d] => {
+            Problem::new(criterion, start, [a, b, c, d]).minimise(method, max_iterations)?
+        }
+        [a, b, c, d, e, ..] => {
+            Problem::new(criterion, start, [a, b, c, d, e]).minimise(method, max_iterations)?
+        }
     };
-    let parameters = onto_bounds(criterion, found.parameters);
+    let parameters = onto_bounds(criterion, free, found.parameters);
     Ok(Minimum {
         parameters,
         error: criterion.error(&parameters),
@@ -124,113 +138,155 @@ pub fn minimise(
     })
 }
 
-fn by_levenberg_marquardt(
-    criterion: &Criterion,
-    start: Parameters,
-    max_iterations: u64,
-) -> Result<Minimum, Error> {
-    let solver = LevenbergMarquardt::new(
-        Vector3::new(0.0, 0.0, K1_RANGE.0),
-        Vector3::new(f64::INFINITY, f64::INFINITY, K1_RANGE.1),
-    );
-    let result = Executor::new(criterion, solver)
-        .configure(|state| state.param(to_vector(start)).max_iters(max_iterations))
-        .ctrlc(false)
-        .run()?;
-    let state = result.state;
-    Ok(Minimum {
-        parameters: to_parameters(state.get_best_param().unwrap_or(&to_vector(start))),
-        error: state.get_best_cost(),
-        iterations: state.get_iter(),
-        evaluations: result.problem.counts.values().sum(),
-        ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
-    })
+/// E as a function of the free parameters.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a, const P: usize> {
+    criterion: &'a Criterion,
+    start: ModelParameters,
+    free: [Parameter; P],
 }
 
-fn by_nelder_mead(
-    criterion: &Criterion,
-    start: Parameters,
-    max_iterations: u64,
-) -> Result<Minimum, Error> {
-    let problem = Unbounded::new(criterion, K1_RANGE);
-    let start = problem.to_coordinates(start);
-    // A weight that starts at zero must be able to leave it: a step as for a Lambertian surface.
-    let weight_step = 0.5 * criterion.lambertian_weight().abs().sqrt().max(1e-6);
-    let solver = NelderMead::new(start, Vector3::new(weight_step, weight_step, 1.0));
-    let result = Executor::new(problem, solver)
-        .configure(|state| state.max_iters(max_iterations))
-        .ctrlc(false)
-        .run()?;
-    let state = result.state;
-    Ok(Minimum {
-        parameters: problem.to_parameters(state.get_best_param().unwrap_or(&start)),
-        error: state.get_best_cost(),
-        iterations: state.get_iter(),
-        evaluations: result.problem.counts.values().sum(),
-        ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
-    })
+impl<'a, const P: usize> Problem<'a, P> {
+    /// E over the free parameters, the others being those of the start.
+    pub fn new(criterion: &'a Criterion, start: ModelParameters, free: [Parameter; P]) -> Self {
+        Self {
+            criterion,
+            start,
+            free,
+        }
+    }
+
+    fn vector(&self, of: impl Fn(Parameter) -> f64) -> SVector<f64, P> {
+        SVector::from(self.free.map(of))
+    }
+
+    fn parameters(&self, vector: &SVector<f64, P>) -> ModelParameters {
+        let mut at = self.start;
+        for (parameter, value) in self.free.iter().zip(vector.iter()) {
+            parameter.set(&mut at, *value);
+        }
+        at
+    }
+
+    fn minimise(self, method: Method, max_iterations: u64) -> Result<Minimum, Error> {
+        match method {
+            Method::NelderMead => self.by_nelder_mead(max_iterations),
+            Method::LevenbergMarquardt => self.by_levenberg_marquardt(max_iterations),
+        }
+    }
+
+    fn by_levenberg_marquardt(self, max_iterations: u64) -> Result<Minimum, Error> {
+        let start = self.vector(|parameter| parameter.of(&self.start));
+        let solver = LevenbergMarquardt::new(
+            self.vector(|parameter| parameter.range().0),
+            self.vector(|parameter| parameter.range().1),
+        );
+        let result = Executor::new(self, solver)
+            .configure(|state| state.param(start).max_iters(max_iterations))
+            .ctrlc(false)
+            .run()?;
+        let state = result.state;
+        Ok(Minimum {
+            parameters: self.parameters(state.get_best_param().unwrap_or(&start)),
+            error: state.get_best_cost(),
+            iterations: state.get_iter(),
+            evaluations: result.problem.counts.values().sum(),
+            ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
+        })
+    }
+
+    fn by_nelder_mead(self, max_iterations: u64) -> Result<Minimum, Error> {
+        let problem = Unbounded::new(self);
+        let start = problem.to_coordinates(&self.start);
+        let solver = NelderMead::new(start, problem.steps());
+        let result = Executor::new(problem, solver)
+            .configure(|state| state.max_iters(max_iterations))
+            .ctrlc(false)
+            .run()?;
+        let state = result.state;
+        Ok(Minimum {
+            parameters: problem.to_parameters(state.get_best_param().unwrap_or(&start)),
+            error: state.get_best_cost(),
+            iterations: state.get_iter(),
+            evaluations: result.problem.counts.values().sum(),
+            ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
+        })
+    }
 }
 
 /// Puts a weight exactly on its bound where E does not become larger by that.
 ///
 /// A minimiser comes as near to a bound as E can tell, and no nearer: to 1e-13 of E, or where E is
 /// nothing but rounding to 1e-10 of the readings.
-fn onto_bounds(criterion: &Criterion, best: Parameters) -> Parameters {
-    [
-        Parameters { kd: 0.0, ..best },
-        Parameters { k2: 0.0, ..best },
-    ]
-    .into_iter()
-    .filter(|bound| criterion.error(bound) <= criterion.error(&best) * (1.0 + 1e-13) + 1e-20)
-    .min_by(|a, b| criterion.error(a).total_cmp(&criterion.error(b)))
-    .unwrap_or(best)
+fn onto_bounds(
+    criterion: &Criterion,
+    free: &[Parameter],
+    best: ModelParameters,
+) -> ModelParameters {
+    [Parameter::Kd, Parameter::K2]
+        .into_iter()
+        .filter(|weight| free.contains(weight))
+        .map(|weight| {
+            let mut bound = best;
+            weight.set(&mut bound, 0.0);
+            bound
+        })
+        .filter(|bound| criterion.error(bound) <= criterion.error(&best) * (1.0 + 1e-13) + 1e-20)
+        .min_by(|a, b| criterion.error(a).total_cmp(&criterion.error(b)))
+        .unwrap_or(best)
 }
 
-fn to_vector(parameters: Parameters) -> Vector3<f64> {
-    Vector3::new(parameters.k2, parameters.kd, parameters.k1)
-}
-
-fn to_parameters(vector: &Vector3<f64>) -> Parameters {
-    Parameters {
-        k2: vector[0],
-        kd: vector[1],
-        k1: vector[2],
-    }
-}
-
-impl CostFunction for &Criterion {
-    type Param = Vector3<f64>;
+impl<const P: usize> CostFunction for Problem<'_, P> {
+    type Param = SVector<f64, P>;
     type Output = f64;
 
-    fn cost(&self, param: &Vector3<f64>) -> Result<f64, Error> {
-        Ok(self.error(&to_parameters(param)))
+    fn cost(&self, param: &SVector<f64, P>) -> Result<f64, Error> {
+        Ok(self.criterion.error(&self.parameters(param)))
     }
 }
 
-impl LeastSquares<3> for &Criterion {
-    fn normal_equations(&self, param: &Vector3<f64>) -> NormalEquations<3> {
-        Criterion::normal_equations(self, &to_parameters(param))
+impl<const P: usize> LeastSquares<P> for Problem<'_, P> {
+    fn normal_equations(&self, param: &SVector<f64, P>) -> NormalEquations<P> {
+        self.criterion
+            .normal_equations(&self.parameters(param), &self.free)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use brdf_core::{Family, Parameters};
+
     use super::*;
+    use crate::model::Model;
     use crate::synthetic::scan;
     use crate::weights::Weights;
 
     const METHODS: [Method; 2] = [Method::NelderMead, Method::LevenbergMarquardt];
 
     fn criterion(truth: Parameters) -> Criterion {
-        Criterion::new(scan(truth, 1.5).readings(), 1.5, &Weights::default()).unwrap()
+        let scan = scan(truth, 1.5);
+        Criterion::new(&scan, Family::Paper, 1.5, &Weights::default()).unwrap()
+    }
+
+    /// The minimum over the paper's three parameters from k2 = kD = k1 = 1.
+    fn minimum(criterion: &Criterion, method: Method, max_iterations: u64) -> Minimum {
+        let one = Parameters::new(1.0, 1.0, 1.0).unwrap();
+        let start = ModelParameters::three(one, 1.5);
+        minimise(
+            criterion,
+            method,
+            start,
+            Model::Three.free(),
+            max_iterations,
+        )
+        .unwrap()
     }
 
     #[test]
     fn both_methods_find_the_parameters_of_a_noise_free_scan() {
         let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
-        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
         for method in METHODS {
-            let found = minimise(&criterion(truth), method, start, 10_000).unwrap();
+            let found = minimum(&criterion(truth), method, 10_000);
             assert!(
                 (found.parameters.k2 / truth.k2 - 1.0).abs() < 1e-6,
                 "{method}: {found:?}"
@@ -242,28 +298,52 @@ mod tests {
 
     #[test]
     fn both_methods_end_exactly_on_a_bound() {
-        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
         for method in METHODS {
             let specular = criterion(Parameters::new(0.3, 0.0, 0.2).unwrap());
-            assert_eq!(
-                minimise(&specular, method, start, 10_000)
-                    .unwrap()
-                    .parameters
-                    .kd,
-                0.0
-            );
+            assert_eq!(minimum(&specular, method, 10_000).parameters.kd, 0.0);
             let diffuse = criterion(Parameters::new(0.0, 0.3, 0.2).unwrap());
-            let found = minimise(&diffuse, method, start, 10_000).unwrap();
+            let found = minimum(&diffuse, method, 10_000);
             assert!(found.parameters.k2 < 1e-9, "{method}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn both_methods_find_the_same_minimum_of_every_model() {
+        let mut readings = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5)
+            .readings()
+            .to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.1 * (2.4 * i as f64).sin();
+        }
+        let scan = crate::Measurements::new("test", readings).unwrap();
+        for model in Model::ALL {
+            let criterion =
+                Criterion::new(&scan, model.family(), 1.5, &Weights::default()).unwrap();
+            let start = ModelParameters {
+                k2: 0.2,
+                kd: 0.1,
+                k1: 0.3,
+                n: 1.6,
+                p: 1.2,
+            };
+            let errors = METHODS.map(|method| {
+                let start = model.start(start);
+                minimise(&criterion, method, start, model.free(), 10_000)
+                    .unwrap()
+                    .error
+            });
+            assert!(
+                (errors[0] / errors[1] - 1.0).abs() < 1e-6,
+                "{model}: {errors:?}"
+            );
         }
     }
 
     #[test]
     fn the_iteration_limit_is_told() {
         let criterion = criterion(Parameters::new(0.3, 0.1, 0.2).unwrap());
-        let start = Parameters::new(1.0, 1.0, 1.0).unwrap();
         for method in METHODS {
-            let found = minimise(&criterion, method, start, 2).unwrap();
+            let found = minimum(&criterion, method, 2);
             assert_eq!(
                 (found.iterations, found.ending),
                 (2, Ending::IterationLimit)

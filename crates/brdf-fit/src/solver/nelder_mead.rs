@@ -1,7 +1,7 @@
 //! Nelder and Mead's simplex method within bounds.
 //!
 //! argmin's simplex knows no bounds, so it moves in coordinates that have none: sqrt(k2),
-//! sqrt(kD) and ln(k1). It stops when its corners have nearly the same E, which also happens to a
+//! sqrt(kD), ln(k1), sqrt(n - 1) and ln(p). It stops when its corners have nearly the same E, which also happens to a
 //! simplex that has collapsed somewhere else than at a minimum; so a fresh simplex starts where
 //! the last one stopped, until one brings nothing.
 
@@ -10,11 +10,11 @@ use argmin::core::{
     TerminationStatus,
 };
 use argmin::solver::neldermead::NelderMead as Simplex;
-use brdf_core::Parameters;
-use nalgebra::Vector3;
+use brdf_core::ModelParameters;
+use nalgebra::SVector;
 
-use super::Ending;
-use crate::criterion::Criterion;
+use super::{Ending, Problem as Free};
+use crate::model::Parameter;
 
 /// A simplex has converged when the standard deviation of E over its corners is below this, as a
 /// fraction of E. (argmin's tolerance is absolute; so it is set anew for each simplex.)
@@ -26,48 +26,76 @@ const SPREAD_FLOOR: f64 = 1e-24;
 /// A fresh simplex has brought nothing when E fell by less than this fraction.
 const RESTART_GAIN: f64 = 1e-9;
 
-/// E over coordinates without bounds: k2 = x0^2, kD = x1^2, k1 = exp(x2).
+/// E over coordinates without bounds: k2 = x^2, kD = x^2, k1 = exp(x), n = 1 + x^2, p = exp(x).
 #[derive(Debug, Clone, Copy)]
-pub struct Unbounded<'a> {
-    criterion: &'a Criterion,
-    k1_range: (f64, f64),
+pub struct Unbounded<'a, const P: usize>(Free<'a, P>);
+
+impl<'a, const P: usize> Unbounded<'a, P> {
+    /// E of the problem, infinite where a parameter is above its range, or k1 or p below it.
+    pub fn new(problem: Free<'a, P>) -> Self {
+        Self(problem)
+    }
+
+    /// The coordinates of parameters, each brought into its range.
+    pub fn to_coordinates(&self, at: &ModelParameters) -> SVector<f64, P> {
+        self.0.vector(|parameter| {
+            let (lowest, highest) = parameter.range();
+            let value = parameter.of(at).clamp(lowest, highest);
+            match parameter {
+                Parameter::K2 | Parameter::Kd => value.sqrt(),
+                Parameter::N => (value - 1.0).sqrt(),
+                Parameter::K1 | Parameter::P => value.ln(),
+            }
+        })
+    }
+
+    /// The parameters of coordinates, each brought into its range.
+    pub fn to_parameters(&self, x: &SVector<f64, P>) -> ModelParameters {
+        let mut values = *x;
+        for (value, parameter) in values.iter_mut().zip(self.0.free) {
+            let (lowest, highest) = parameter.range();
+            *value = of_coordinate(parameter, *value).clamp(lowest, highest);
+        }
+        self.0.parameters(&values)
+    }
+
+    /// The sizes of a first simplex. A weight that starts at zero must be able to leave it: a step
+    /// as for a Lambertian surface.
+    pub fn steps(&self) -> SVector<f64, P> {
+        let weight = self.0.criterion.lambertian_weight().abs().max(1e-12);
+        self.0.vector(|parameter| match parameter {
+            Parameter::K2 | Parameter::Kd => 0.5 * weight.sqrt(),
+            Parameter::K1 => 1.0,
+            Parameter::N => 0.3,
+            Parameter::P => 0.5,
+        })
+    }
+
+    fn is_inside(&self, x: &SVector<f64, P>) -> bool {
+        x.iter().zip(self.0.free).all(|(x, parameter)| {
+            let (lowest, highest) = parameter.range();
+            let value = of_coordinate(parameter, *x);
+            // The clamped start may be a rounding outside the range.
+            (lowest * 0.999..=highest * 1.001).contains(&value)
+        })
+    }
 }
 
-impl<'a> Unbounded<'a> {
-    /// E of the criterion, infinite where k1 is out of its range.
-    pub fn new(criterion: &'a Criterion, k1_range: (f64, f64)) -> Self {
-        Self {
-            criterion,
-            k1_range,
-        }
-    }
-
-    /// The coordinates of parameters, k1 brought into its range.
-    pub fn to_coordinates(&self, parameters: Parameters) -> Vector3<f64> {
-        let k1 = parameters.k1.clamp(self.k1_range.0, self.k1_range.1);
-        Vector3::new(parameters.k2.sqrt(), parameters.kd.sqrt(), k1.ln())
-    }
-
-    /// The parameters of coordinates.
-    pub fn to_parameters(&self, x: &Vector3<f64>) -> Parameters {
-        Parameters {
-            k2: x[0] * x[0],
-            kd: x[1] * x[1],
-            k1: x[2].exp().clamp(self.k1_range.0, self.k1_range.1),
-        }
+fn of_coordinate(parameter: Parameter, x: f64) -> f64 {
+    match parameter {
+        Parameter::K2 | Parameter::Kd => x * x,
+        Parameter::N => 1.0 + x * x,
+        Parameter::K1 | Parameter::P => x.exp(),
     }
 }
 
-impl CostFunction for Unbounded<'_> {
-    type Param = Vector3<f64>;
+impl<const P: usize> CostFunction for Unbounded<'_, P> {
+    type Param = SVector<f64, P>;
     type Output = f64;
 
-    fn cost(&self, x: &Vector3<f64>) -> Result<f64, Error> {
-        let k1 = x[2].exp();
-        // The clamped start may be a rounding outside the range.
-        let inside = (self.k1_range.0 * 0.999..=self.k1_range.1 * 1.001).contains(&k1);
-        let error = self.criterion.error(&self.to_parameters(x));
-        Ok(if inside && error.is_finite() {
+    fn cost(&self, x: &SVector<f64, P>) -> Result<f64, Error> {
+        let error = self.0.criterion.error(&self.to_parameters(x));
+        Ok(if self.is_inside(x) && error.is_finite() {
             error
         } else {
             f64::INFINITY
@@ -77,20 +105,20 @@ impl CostFunction for Unbounded<'_> {
 
 /// The solver: argmin's simplex, started afresh until that brings nothing.
 #[derive(Clone)]
-pub struct NelderMead {
-    simplex: Simplex<Vector3<f64>, f64>,
-    start: Vector3<f64>,
-    steps: Vector3<f64>,
+pub struct NelderMead<const P: usize> {
+    simplex: Simplex<SVector<f64, P>, f64>,
+    start: SVector<f64, P>,
+    steps: SVector<f64, P>,
     /// E where the simplex in use started.
     error_at_start: f64,
     ending: Option<Ending>,
 }
 
-type State = IterState<Vector3<f64>, (), (), (), (), f64>;
+type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
 
-impl NelderMead {
+impl<const P: usize> NelderMead<P> {
     /// A solver that starts with a simplex of the given steps along each coordinate.
-    pub fn new(start: Vector3<f64>, steps: Vector3<f64>) -> Self {
+    pub fn new(start: SVector<f64, P>, steps: SVector<f64, P>) -> Self {
         Self {
             simplex: simplex(start, steps),
             start,
@@ -108,9 +136,9 @@ impl NelderMead {
     /// A new simplex at the start, in the next direction and of the next size.
     fn place(
         &mut self,
-        problem: &mut Problem<Unbounded<'_>>,
-        state: State,
-    ) -> Result<State, Error> {
+        problem: &mut Problem<Unbounded<'_, P>>,
+        state: State<P>,
+    ) -> Result<State<P>, Error> {
         self.error_at_start = problem.cost(&self.start)?;
         let tolerance = SPREAD_TOLERANCE * self.error_at_start + SPREAD_FLOOR;
         self.simplex = simplex(self.start, self.steps).with_sd_tolerance(tolerance)?;
@@ -118,34 +146,37 @@ impl NelderMead {
     }
 }
 
-fn simplex(start: Vector3<f64>, steps: Vector3<f64>) -> Simplex<Vector3<f64>, f64> {
+fn simplex<const P: usize>(
+    start: SVector<f64, P>,
+    steps: SVector<f64, P>,
+) -> Simplex<SVector<f64, P>, f64> {
     let corner = |j: usize| {
         let mut corner = start;
         corner[j] += steps[j];
         corner
     };
-    Simplex::new(vec![start, corner(0), corner(1), corner(2)])
+    Simplex::new(std::iter::once(start).chain((0..P).map(corner)).collect())
 }
 
-impl<'a> Solver<Unbounded<'a>, State> for NelderMead {
+impl<'a, const P: usize> Solver<Unbounded<'a, P>, State<P>> for NelderMead<P> {
     fn name(&self) -> &'static str {
         "Nelder-Mead within bounds"
     }
 
     fn init(
         &mut self,
-        problem: &mut Problem<Unbounded<'a>>,
-        state: State,
-    ) -> Result<(State, Option<KV>), Error> {
+        problem: &mut Problem<Unbounded<'a, P>>,
+        state: State<P>,
+    ) -> Result<(State<P>, Option<KV>), Error> {
         Ok((self.place(problem, state)?, None))
     }
 
     fn next_iter(
         &mut self,
-        problem: &mut Problem<Unbounded<'a>>,
-        state: State,
-    ) -> Result<(State, Option<KV>), Error> {
-        let converged = Solver::<Unbounded<'a>, State>::terminate(&mut self.simplex, &state);
+        problem: &mut Problem<Unbounded<'a, P>>,
+        state: State<P>,
+    ) -> Result<(State<P>, Option<KV>), Error> {
+        let converged = Solver::<Unbounded<'a, P>, State<P>>::terminate(&mut self.simplex, &state);
         if !converged.terminated() {
             return self.simplex.next_iter(problem, state);
         }
@@ -160,7 +191,7 @@ impl<'a> Solver<Unbounded<'a>, State> for NelderMead {
         Ok((self.place(problem, state)?, None))
     }
 
-    fn terminate(&mut self, _state: &State) -> TerminationStatus {
+    fn terminate(&mut self, _state: &State<P>) -> TerminationStatus {
         match self.ending {
             Some(_) => TerminationStatus::Terminated(TerminationReason::SolverConverged),
             None => TerminationStatus::NotTerminated,
@@ -170,33 +201,43 @@ impl<'a> Solver<Unbounded<'a>, State> for NelderMead {
 
 #[cfg(test)]
 mod tests {
+    use brdf_core::{Family, Parameters};
+    use nalgebra::SVector;
     use proptest::prelude::*;
 
     use super::*;
+    use crate::criterion::Criterion;
     use crate::synthetic::scan;
     use crate::weights::Weights;
 
-    fn with_criterion<T>(test: impl FnOnce(Unbounded<'_>) -> T) -> T {
+    const START: ModelParameters = ModelParameters {
+        k2: 0.1,
+        kd: 0.1,
+        k1: 0.1,
+        n: 1.5,
+        p: 1.0,
+    };
+
+    fn with_problem<T>(test: impl FnOnce(Unbounded<'_, 5>) -> T) -> T {
         let scan = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
-        let criterion = Criterion::new(scan.readings(), 1.5, &Weights::default()).unwrap();
-        test(Unbounded::new(&criterion, (1e-6, 1e3)))
+        let criterion = Criterion::new(&scan, Family::Power, 1.5, &Weights::default()).unwrap();
+        test(Unbounded::new(Free::new(&criterion, START, Parameter::ALL)))
     }
 
     #[test]
     fn no_coordinates_leave_the_bounds_with_a_finite_error() {
-        with_criterion(|problem| {
+        with_problem(|problem| {
             for x in [-30.0, -13.9, 6.95, 800.0, f64::NAN] {
-                assert_eq!(
-                    problem.cost(&Vector3::new(0.5, 0.5, x)).unwrap(),
-                    f64::INFINITY
-                );
+                for axis in [2, 4] {
+                    let mut coordinates = SVector::<f64, 5>::repeat(0.5);
+                    coordinates[axis] = x;
+                    assert_eq!(problem.cost(&coordinates).unwrap(), f64::INFINITY);
+                }
             }
+            let beyond = SVector::<f64, 5>::from([0.5, 0.5, 0.5, 2.3, 0.5]);
+            assert_eq!(problem.cost(&beyond).unwrap(), f64::INFINITY);
             for k1 in [1e-6, 1e3, 1e9] {
-                let edge = problem.to_coordinates(Parameters {
-                    k2: 0.1,
-                    kd: 0.1,
-                    k1,
-                });
+                let edge = problem.to_coordinates(&ModelParameters { k1, ..START });
                 assert!(problem.cost(&edge).unwrap().is_finite());
                 assert!(problem.to_parameters(&edge).k1 <= 1e3);
             }
@@ -205,13 +246,16 @@ mod tests {
 
     proptest! {
         #[test]
-        fn coordinates_go_there_and_back(k2 in 0.0..10.0, kd in 0.0..10.0, log_k1 in -13.8..6.9_f64) {
-            with_criterion(|problem| {
-                let there = Parameters { k2, kd, k1: log_k1.exp() };
-                let back = problem.to_parameters(&problem.to_coordinates(there));
-                prop_assert!((back.k2 - k2).abs() < 1e-14);
-                prop_assert!((back.kd - kd).abs() < 1e-14);
-                prop_assert!((back.k1 / there.k1 - 1.0).abs() < 1e-14);
+        fn coordinates_go_there_and_back(
+            k2 in 0.0..10.0, kd in 0.0..10.0, log_k1 in -13.8..6.9_f64, n in 1.0..6.0, p in 0.1..16.0,
+        ) {
+            with_problem(|problem| {
+                let there = ModelParameters { k2, kd, k1: log_k1.exp(), n, p };
+                let back = problem.to_parameters(&problem.to_coordinates(&there));
+                for parameter in Parameter::ALL {
+                    let (there, back) = (parameter.of(&there), parameter.of(&back));
+                    prop_assert!((back - there).abs() < 1e-14 * (1.0 + there));
+                }
                 Ok(())
             })?;
         }

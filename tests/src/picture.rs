@@ -63,7 +63,7 @@ fn draw(scan: &Measurements, fit: &Fit, svg: &mut String) -> Result<(), Box<dyn 
     let last = ThreeParameterBrdf::new(fit.parameters, fit.n)?;
     let first = fit
         .stage1
-        .map(|stage| ThreeParameterBrdf::new(stage.parameters, fit.n))
+        .map(|stage| ThreeParameterBrdf::new(stage.parameters.parameters(), fit.n))
         .transpose()?;
     let several: Vec<Incidence> = scan
         .incidences()

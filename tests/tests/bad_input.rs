@@ -229,7 +229,7 @@ fn one_bad_file_does_not_keep_the_others() {
     assert_eq!((output.status.code(), lines(&output)), (Some(FAILED), 4));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(
-        text.contains("failed: 1 reading: three parameters need at least 4"),
+        text.contains("failed: 1 reading: 3 free parameters need at least 4"),
         "{text}"
     );
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use brdf_fit::report::Report;
+use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Method, RefractiveIndex, fit};
 use brdf_tests::{ExpectedOptimum, expected_optima, in_workspace, one_wavelength, shared_data};
 
@@ -65,7 +65,7 @@ fn a_sample_that_the_model_cannot_describe_is_said_to_be_one() {
     };
     for row in expected_optima(&folder.join("expected_optima.csv")) {
         let scan = one_wavelength(&folder.join(&row.file), row.wavelength_um);
-        let (report, _) = Report::of(&scan, &options);
+        let (report, _) = Report::of(&scan, &options, Depth::Fit);
         let says_so = report
             .text()
             .contains("the model does not describe this sample");

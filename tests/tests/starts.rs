@@ -1,6 +1,6 @@
 //! The fit from random starting points, on the measured samples of the project.
 
-use brdf_core::Parameters;
+use brdf_core::ModelParameters;
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex, fit};
 use brdf_tests::{generator, in_workspace, log_uniform};
 
@@ -40,10 +40,12 @@ fn random_starts_end_at_the_optimum() {
             let mut generator = generator(1);
             let mut reached_by_stage2 = 0;
             for _ in 0..STARTS {
-                options.start = Some(Parameters {
+                options.start = Some(ModelParameters {
                     k2: log_uniform(&mut generator, 1e-3, 10.0),
                     kd: log_uniform(&mut generator, 1e-3, 10.0),
                     k1: log_uniform(&mut generator, 1e-3, 10.0),
+                    n: 1.5,
+                    p: 1.0,
                 });
                 let fit = fit(&scan, &options).unwrap();
                 let reached = |e_percent: f64| e_percent <= optimum * (1.0 + TOLERANCE);

@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
-use brdf_fit::report::Report;
+use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex, fit};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
@@ -108,7 +108,7 @@ fn fits(c: &mut Criterion) {
     }
     let all = options(Some(lm), lm, true);
     group.bench_function("two stages LM, global check, warnings", |b| {
-        b.iter(|| Report::of(black_box(&scan), &all));
+        b.iter(|| Report::of(black_box(&scan), &all, Depth::Fit));
     });
     let start = fit(&scan, &options(None, lm, false))
         .expect("a fit")

@@ -270,8 +270,13 @@ impl Criterion {
     /// The terms under the sum of E before they are squared: model - measured and measured, for
     /// each row.
     pub(crate) fn residuals(&self, at: &ModelParameters) -> Vec<(f64, f64)> {
-        let mut residuals = Vec::with_capacity(self.len());
-        self.for_blocks(at, [false; 3], 0..self.len(), |rows, block| {
+        self.residuals_of(at, 0..self.len())
+    }
+
+    /// The [`residuals`](Self::residuals) of some of the rows.
+    pub(crate) fn residuals_of(&self, at: &ModelParameters, rows: Range<usize>) -> Vec<(f64, f64)> {
+        let mut residuals = Vec::with_capacity(rows.len());
+        self.for_blocks(at, [false; 3], rows, |rows, block| {
             let r = residual(block, at);
             residuals.extend(r.into_iter().zip(block.y).take(rows.len()));
         });

@@ -26,18 +26,23 @@
 //! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
 //! on screens only, with `_deg` in the name.
 
+pub mod assessment;
 pub mod criterion;
+pub mod energy;
 pub mod initial;
 pub mod measurement;
 pub mod model;
 pub mod output;
+pub mod prediction;
 pub mod profile;
 pub mod read;
 pub mod refractive_index;
 pub mod report;
+pub mod robust;
 pub mod solver;
 pub mod stages;
 pub mod synthetic;
+pub mod uncertainty;
 pub mod warning;
 pub mod weights;
 mod words;

@@ -199,6 +199,21 @@ impl Measurements {
         incidences
     }
 
+    /// At most about `limit` of the readings, evenly over each incidence in the order of the file,
+    /// and at least one of each.
+    pub fn thinned(&self, limit: usize) -> Self {
+        let step = self.readings.len().div_ceil(limit.max(1)).max(1);
+        let incidences = self.incidences();
+        let mut kept: Vec<usize> = incidences
+            .iter()
+            .flat_map(|incidence| incidence.readings.iter().copied().step_by(step))
+            .collect();
+        kept.sort_unstable();
+        let mut thinned = self.without_readings();
+        thinned.readings = kept.into_iter().map(|i| self.readings[i]).collect();
+        thinned
+    }
+
     fn without_readings(&self) -> Self {
         Self {
             source: self.source.clone(),

@@ -253,6 +253,13 @@ impl Profile<'_> {
         self.point(lowest.map_or(0, |(i, _)| i))
     }
 
+    /// All points, the lowest first.
+    pub(crate) fn ascending(&self) -> Vec<ProfilePoint> {
+        let mut points: Vec<ProfilePoint> = (0..self.points.len()).map(|i| self.point(i)).collect();
+        points.sort_by(|a, b| a.error.total_cmp(&b.error));
+        points
+    }
+
     /// The few lowest of the points that are lower than their neighbours, the lowest first.
     pub(crate) fn minima(&self) -> Vec<ProfilePoint> {
         let is_minimum = |i: usize| {

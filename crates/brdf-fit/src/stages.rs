@@ -6,14 +6,16 @@ use brdf_core::{ModelParameters, Parameters};
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, CriterionError, Segment};
+use crate::energy::{EnergyConstraint, conserve};
 use crate::initial::{InitialValues, initial_values};
 use crate::measurement::{Incidence, Measurements};
 use crate::model::{Model, Parameter, USUAL_N};
 use crate::profile::{ProfilePoint, Search};
 use crate::refractive_index::RefractiveIndex;
+use crate::robust::{Loss, RobustFit, fit_robustly};
 use crate::solver::{Ending, Method, minimise};
 use crate::weights::Weights;
-use crate::words::{as_degrees, counted, in_degrees};
+use crate::words::{as_degrees, as_optional_degrees, counted, in_degrees};
 
 /// Version of the JSON that [`Fit`] is written as.
 pub const FORMAT_VERSION: u32 = 1;
@@ -52,6 +54,13 @@ pub struct FitOptions {
     pub max_iterations: u64,
     /// Whether the profile search over k1 checks the result of stage 2.
     pub global_check: bool,
+    /// A loss other than the square, for data with outliers; `None` is the paper's E.
+    #[serde(default)]
+    pub robust: Option<Loss>,
+    /// Fit under rho(psi) <= 1 up to this incidence, in radians (in JSON in degrees,
+    /// `energy_limit_deg`); `None` leaves the fit free.
+    #[serde(default, rename = "energy_limit_deg", with = "as_optional_degrees")]
+    pub energy_limit: Option<f64>,
 }
 
 /// Levenberg-Marquardt in both stages: on the scans in `data/measured/` at n = 1.5 it reaches the
@@ -69,6 +78,8 @@ impl Default for FitOptions {
             stage2: Method::LevenbergMarquardt,
             max_iterations: 10_000,
             global_check: true,
+            robust: None,
+            energy_limit: None,
         }
     }
 }
@@ -109,6 +120,12 @@ pub struct Fit {
     pub stage2: Stage,
     /// The check against the global optimum; `None` where it was left out.
     pub global_check: Option<GlobalCheck>,
+    /// What another loss than the square did, where one was asked for.
+    #[serde(default)]
+    pub robust: Option<RobustFit>,
+    /// What keeping energy did, where it was asked for.
+    #[serde(default)]
+    pub energy: Option<EnergyConstraint>,
     /// Time of the whole fit in seconds.
     pub seconds: f64,
 }
@@ -256,14 +273,23 @@ impl Fit {
 ///
 /// The result is the same in every run, but for the times.
 pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, FitError> {
-    fit_with_criterion(measurements, options).map(|(fit, _)| fit)
+    fit_scan(measurements, options).map(|fitted| fitted.fit)
 }
 
-/// [`fit`], and the criterion over all readings that it minimised.
-pub(crate) fn fit_with_criterion(
+/// A fit with what it was made with.
+pub(crate) struct Fitted {
+    pub(crate) fit: Fit,
+    /// The criterion over all readings that was minimised, weights of a robust loss included.
+    pub(crate) criterion: Criterion,
+    /// The search of the global check.
+    pub(crate) search: Option<Search>,
+}
+
+/// [`fit`], with what it was made with.
+pub(crate) fn fit_scan(
     measurements: &Measurements,
     options: &FitOptions,
-) -> Result<(Fit, Criterion), FitError> {
+) -> Result<Fitted, FitError> {
     let started = Instant::now();
     let readings = measurements.readings();
     let wavelength_um = single_wavelength(measurements)?;
@@ -310,11 +336,18 @@ pub(crate) fn fit_with_criterion(
     let stage2 = run(options.stage2, &all, &all, stage2_start, options)?;
     let mut parameters = stage2.parameters;
     let mut global_check = None;
+    let mut search = None;
     if options.global_check {
-        let check = check_globally(&all, stage2, options)?;
+        let started = Instant::now();
+        let searched = search.insert(Search::new(&all, model));
+        let mut check = check_globally(&all, searched, stage2, options)?;
+        check.1.seconds = started.elapsed().as_secs_f64();
         parameters = check.0;
         global_check = Some(check.1);
     }
+
+    let after = after_the_stages(&all, parameters, options)?;
+    parameters = after.parameters;
 
     let fit = Fit {
         format_version: FORMAT_VERSION,
@@ -333,9 +366,53 @@ pub(crate) fn fit_with_criterion(
         stage1_left_out: first.left_out,
         stage2,
         global_check,
+        robust: after.robust,
+        energy: after.energy,
         seconds: started.elapsed().as_secs_f64(),
     };
-    Ok((fit, all))
+    Ok(Fitted {
+        fit,
+        criterion: after.weighted.unwrap_or(all),
+        search,
+    })
+}
+
+/// What comes after the paper's stages, where it is asked for.
+struct After {
+    parameters: ModelParameters,
+    /// The criterion with the weights of a robust loss.
+    weighted: Option<Criterion>,
+    robust: Option<RobustFit>,
+    energy: Option<EnergyConstraint>,
+}
+
+fn after_the_stages(
+    all: &Criterion,
+    parameters: ModelParameters,
+    options: &FitOptions,
+) -> Result<After, FitError> {
+    let mut after = After {
+        parameters,
+        weighted: None,
+        robust: None,
+        energy: None,
+    };
+    if let Some(loss) = options.robust {
+        let (at, weighted, robust) = fit_robustly(all, loss, parameters, options.model.free())?;
+        (after.parameters, after.weighted, after.robust) = (at, Some(weighted), Some(robust));
+    }
+    if let Some(limit) = options.energy_limit {
+        let criterion = after.weighted.as_ref().unwrap_or(all);
+        let free = after.parameters;
+        after.parameters = conserve(criterion, options.model, &free, limit)?;
+        after.energy = Some(EnergyConstraint {
+            limit_deg: in_degrees(limit),
+            free,
+            free_e_percent: 100.0 * all.error(&free),
+            binding: after.parameters != free,
+        });
+    }
+    Ok(after)
 }
 
 /// The refractive index that the options or the measurements state, or the usual one where it is
@@ -473,11 +550,10 @@ pub(crate) fn polish(
 /// Looks for a minimum below that of stage 2, and takes it where there is one.
 fn check_globally(
     all: &Criterion,
+    search: &Search,
     stage2: Stage,
     options: &FitOptions,
 ) -> Result<(ModelParameters, GlobalCheck), FitError> {
-    let started = Instant::now();
-    let search = Search::new(all, options.model);
     let profile = search.whole();
     let mut parameters = stage2.parameters;
     for minimum in profile.minima() {
@@ -499,7 +575,7 @@ fn check_globally(
         profile_n: several_n
             .then(|| profile.along(Parameter::N))
             .unwrap_or_default(),
-        seconds: started.elapsed().as_secs_f64(),
+        seconds: 0.0,
     };
     Ok((parameters, check))
 }
@@ -525,6 +601,7 @@ pub(crate) fn errors_by_incidence(all: &Criterion, at: &ModelParameters) -> Vec<
 mod tests {
     use super::*;
     use crate::measurement::Measurement;
+    use crate::report::Depth;
     use crate::synthetic::scan;
 
     fn truth() -> Parameters {
@@ -611,10 +688,8 @@ mod tests {
             let fit = fit(&scan, &options()).unwrap();
             assert!((fit.parameters.k1 / 0.2 - 1.0).abs() < 0.1);
             assert!((fit.parameters.k2 / (0.3 * size) - 1.0).abs() < 0.1);
-            assert_eq!(
-                crate::warning::warnings(&scan, &fit).len(),
-                usize::from(size > 1.0)
-            );
+            let report = crate::report::Report::of(&scan, &options(), Depth::Fit).0;
+            assert_eq!(report.warnings.len(), usize::from(size > 1.0));
         }
     }
 

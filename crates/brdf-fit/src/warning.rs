@@ -3,15 +3,16 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-use brdf_core::{AnyBrdf, Parameters};
+use brdf_core::AnyBrdf;
 use serde::{Deserialize, Serialize};
 
-use crate::criterion::{Criterion, NormalEquations};
+use crate::criterion::Criterion;
 use crate::measurement::{Measurement, Measurements};
-use crate::model::{K1_RANGE, Model, Parameter};
-use crate::profile::{ProfilePoint, Search};
+use crate::model::{Model, Parameter};
+use crate::profile::Search;
 use crate::solver::Ending;
 use crate::stages::Fit;
+use crate::uncertainty::{Estimate, Knowledge, Noise, Uncertainty};
 use crate::words::counted;
 
 /// Above this E the model does not describe a sample: the readings are missed by a third of their
@@ -25,8 +26,8 @@ const FEW_INCIDENCES: usize = 3;
 /// radians: 2.5 deg, or 5 deg of view angle in the plane of incidence.
 const NEAR_MIRROR_TILT: f64 = 2.5 * PI / 180.0;
 
-/// Quantile of chi-square for one parameter at 95 %.
-const CHI_SQUARE_95: f64 = 3.841;
+/// Residuals twice as large as the stated errors are more than chance.
+const LARGE_CHI_SQUARE: f64 = 4.0;
 
 /// Below this E a scan is described well enough as it is.
 const FITS_WELL_PERCENT: f64 = 1.0;
@@ -53,21 +54,21 @@ pub enum Warning {
         /// The incidence angle from which it does, in degrees.
         psi_deg: f64,
     },
-    /// The data do not determine k1.
-    WidthNotDetermined {
-        /// The range of k1 in which E stays within its 95 % interval.
-        from: f64,
-        /// Its upper end.
-        to: f64,
+    /// The data do not determine a parameter.
+    NotDetermined {
+        /// The parameter.
+        parameter: Parameter,
         /// Why.
         reason: String,
+        /// The lower end of its interval of 95 %; `None` where it has none.
+        from: Option<f64>,
+        /// The upper end.
+        to: Option<f64>,
     },
-    /// The data do not determine a weight.
-    WeightNotDetermined {
-        /// k2 or kD.
-        weight: String,
-        /// Why.
-        reason: String,
+    /// The residuals are larger than the standard deviations that the scan states.
+    LargerThanStatedErrors {
+        /// The mean square of residual over standard deviation.
+        reduced_chi_square: f64,
     },
     /// Few incidence angles.
     FewIncidences {
@@ -120,14 +121,27 @@ impl fmt::Display for Warning {
                 "the hemispherical reflectance is above 1 from psi = {psi_deg:.1} deg on, which no \
                  real surface has"
             ),
-            Self::WidthNotDetermined { from, to, reason } => write!(
-                f,
-                "the data do not determine k1: {reason} (E stays within its 95 % interval for k1 \
-                 from {from:.2e} to {to:.2e})"
-            ),
-            Self::WeightNotDetermined { weight, reason } => {
-                write!(f, "the data do not determine {weight}: {reason}")
+            Self::NotDetermined {
+                parameter,
+                reason,
+                from,
+                to,
+            } => {
+                write!(f, "the data do not determine {parameter}: {reason}")?;
+                match (from, to) {
+                    (Some(from), None) => write!(f, " (above {from:.2e} at 95 %)"),
+                    (None, Some(to)) => write!(f, " (below {to:.2e} at 95 %)"),
+                    (Some(from), Some(to)) => write!(f, " ({from:.2e} to {to:.2e} at 95 %)"),
+                    (None, None) => Ok(()),
+                }
             }
+            Self::LargerThanStatedErrors { reduced_chi_square } => write!(
+                f,
+                "the residuals are {:.1} times as large as the standard deviations of the readings \
+                 (root mean square): what the model misses is more than noise, and the intervals \
+                 are too short",
+                reduced_chi_square.sqrt()
+            ),
             Self::FewIncidences { count } => {
                 let count = counted(*count, "incidence angle");
                 write!(f, "{count}: little is known of other incidences")
@@ -168,8 +182,8 @@ impl fmt::Display for Warning {
     }
 }
 
-/// All warnings about a fit of the measurements, the gravest first.
-pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
+/// All warnings about a fit of the measurements with its uncertainty, the gravest first.
+pub fn warnings(measurements: &Measurements, fit: &Fit, uncertainty: &Uncertainty) -> Vec<Warning> {
     let readings = measurements.readings();
     let mut warnings = Vec::new();
     if fit.e_percent > NOT_DESCRIBED_PERCENT {
@@ -177,19 +191,38 @@ pub fn warnings(measurements: &Measurements, fit: &Fit) -> Vec<Warning> {
             e_percent: fit.e_percent,
         });
     }
-    if let Ok(criterion) = Criterion::new(
-        measurements,
-        fit.model().family(),
-        fit.n,
-        &fit.options.weights,
-    ) {
-        warnings.extend(turned_round(measurements, fit));
-        warnings.extend(not_determined(&criterion, fit));
-    }
+    warnings.extend(turned_round(measurements, fit));
+    warnings.extend(uncertainty.estimates.iter().filter_map(not_determined));
+    warnings.extend(larger_than_stated_errors(uncertainty));
     warnings.extend(reflectance_above_one(fit));
     warnings.extend(iteration_limits(fit));
     warnings.extend(about_readings(readings, fit));
     warnings
+}
+
+fn not_determined(estimate: &Estimate) -> Option<Warning> {
+    let Knowledge::NotDetermined {
+        reason,
+        interval_95,
+    } = &estimate.knowledge
+    else {
+        return None;
+    };
+    Some(Warning::NotDetermined {
+        parameter: estimate.parameter,
+        reason: reason.clone(),
+        from: interval_95.from,
+        to: interval_95.to,
+    })
+}
+
+fn larger_than_stated_errors(uncertainty: &Uncertainty) -> Option<Warning> {
+    match uncertainty.noise {
+        Noise::Given { reduced_chi_square } if reduced_chi_square > LARGE_CHI_SQUARE => {
+            Some(Warning::LargerThanStatedErrors { reduced_chi_square })
+        }
+        _ => None,
+    }
 }
 
 fn turned_round(measurements: &Measurements, fit: &Fit) -> Option<Warning> {
@@ -276,97 +309,13 @@ fn direction(reading: &Measurement) -> [i64; 3] {
     [psi, theta, if theta == 0 { 0 } else { phi }]
 }
 
-/// Which parameters the data leave open, in the linear approximation for the weights and along
-/// the profile for the width.
-fn not_determined(criterion: &Criterion, fit: &Fit) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    let parameters = fit.parameters;
-    if parameters.k2 == 0.0 {
-        warnings.push(Warning::WidthNotDetermined {
-            from: K1_RANGE.0,
-            to: K1_RANGE.1,
-            reason: "k2 is 0, and an absent lobe has no width".to_owned(),
-        });
-        return warnings;
-    }
-    let profile = fit
-        .global_check
-        .as_ref()
-        .map(|check| check.profile.as_slice());
-    warnings.extend(profile.and_then(|profile| width_not_determined(profile, fit)));
-    let free = [Parameter::K2, Parameter::Kd, Parameter::K1];
-    let equations = criterion.normal_equations(&fit.at(), &free);
-    warnings.extend(weights_not_determined(&equations, criterion, fit));
-    warnings
-}
-
-/// The interval of k1 in which E stays below its minimum times 1 + chi^2/(N - 3): where it reaches
-/// the end of the search, k1 has no limit on that side.
-fn width_not_determined(profile: &[ProfilePoint], fit: &Fit) -> Option<Warning> {
-    let limit = 0.01 * fit.e_percent * (1.0 + CHI_SQUARE_95 / fit.degrees_of_freedom() as f64);
-    let k1 = fit.parameters.k1;
-    let inside = |point: &&ProfilePoint| point.error <= limit;
-    let below = profile
-        .iter()
-        .rev()
-        .filter(|point| point.parameters.k1 <= k1);
-    let above = profile.iter().filter(|point| point.parameters.k1 >= k1);
-    let from = below
-        .take_while(inside)
-        .last()
-        .map_or(k1, |point| point.parameters.k1);
-    let to = above
-        .take_while(inside)
-        .last()
-        .map_or(k1, |point| point.parameters.k1);
-    let reason = match (from <= K1_RANGE.0, to >= K1_RANGE.1) {
-        (false, false) => return None,
-        (true, false) => "any narrower peak fits as well: it is narrower than the scan resolves",
-        (false, true) => "any wider distribution fits as well: there is no peak",
-        (true, true) => "any width fits as well",
-    };
-    Some(Warning::WidthNotDetermined {
-        from,
-        to,
-        reason: reason.to_owned(),
-    })
-}
-
-/// Weights whose standard error is larger than what they could be.
-fn weights_not_determined(
-    equations: &NormalEquations<3>,
-    criterion: &Criterion,
-    fit: &Fit,
-) -> Vec<Warning> {
-    let Parameters { k2, kd, .. } = fit.parameters;
-    let variance = equations.error / fit.degrees_of_freedom() as f64;
-    let Some(inverse) = equations.matrix.try_inverse() else {
-        return vec![Warning::WeightNotDetermined {
-            weight: "k2 and kD".to_owned(),
-            reason: "the readings do not tell the specular from the diffuse part".to_owned(),
-        }];
-    };
-    let standard_error = |i: usize| (variance * inverse[(i, i)]).sqrt();
-    let level = criterion.lambertian_weight();
-    // kD may well be near 0; what matters then is how much of the whole it might be.
-    [("k2", 0, k2, k2), ("kD", 1, kd, kd.max(0.5 * level))]
-        .into_iter()
-        .filter(|&(_, i, _, largest)| standard_error(i).is_nan() || standard_error(i) > largest)
-        .map(|(name, i, value, _)| Warning::WeightNotDetermined {
-            weight: name.to_owned(),
-            reason: match standard_error(i) {
-                error if error.is_nan() => "the readings do not tell it from k1".to_owned(),
-                error => format!("{value:.3e} has a standard error of {error:.1e}"),
-            },
-        })
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use brdf_core::Parameters;
+
     use super::*;
     use crate::refractive_index::RefractiveIndex;
-    use crate::stages::{FitOptions, fit};
+    use crate::stages::{FitOptions, fit_scan};
     use crate::synthetic::scan;
 
     fn warnings_of(readings: Vec<Measurement>, change: impl Fn(&mut FitOptions)) -> Vec<Warning> {
@@ -376,7 +325,9 @@ mod tests {
             ..FitOptions::default()
         };
         change(&mut options);
-        warnings(&scan, &fit(&scan, &options).unwrap())
+        let fitted = fit_scan(&scan, &options).unwrap();
+        let uncertainty = Uncertainty::of_fit(&fitted);
+        warnings(&scan, &fitted.fit, &uncertainty)
     }
 
     /// A scan with 2 % of ripple, which the model fits well and no parameter follows.
@@ -403,7 +354,7 @@ mod tests {
             reading.brdf = if is_mirror { 1e3 } else { reading.brdf };
         }
         let all = warnings_of(readings, |_| ());
-        let narrower = |w: &Warning| matches!(w, Warning::WidthNotDetermined { reason, .. } if reason.contains("narrower"));
+        let narrower = |w: &Warning| matches!(w, Warning::NotDetermined { reason, .. } if reason.contains("narrower"));
         assert!(all.iter().any(narrower), "{all:?}");
     }
 
@@ -411,12 +362,7 @@ mod tests {
     fn a_lambertian_scan_has_neither_width_nor_specular_weight() {
         let readings = rippled(0.0, 0.3, 1.0);
         let all = warnings_of(readings, |_| ());
-        let open = |w: &Warning| {
-            matches!(
-                w,
-                Warning::WidthNotDetermined { .. } | Warning::WeightNotDetermined { .. }
-            )
-        };
+        let open = |w: &Warning| matches!(w, Warning::NotDetermined { .. });
         assert!(all.iter().any(open), "{all:?}");
     }
 
@@ -434,7 +380,15 @@ mod tests {
                 .any(|w| matches!(w, Warning::NoMirrorReadings { .. })),
             "{all:?}"
         );
-        let open = |w: &Warning| matches!(w, Warning::WeightNotDetermined { weight, .. } if weight.starts_with("k2"));
+        let open = |w: &Warning| {
+            matches!(
+                w,
+                Warning::NotDetermined {
+                    parameter: Parameter::K2,
+                    ..
+                }
+            )
+        };
         assert!(all.iter().any(open), "{all:?}");
     }
 

@@ -25,6 +25,23 @@ pub(crate) mod as_degrees {
     }
 }
 
+/// [`as_degrees`] of an angle that need not be there.
+pub(crate) mod as_optional_degrees {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::ref_option, reason = "serde's signature")]
+    pub(crate) fn serialize<S: Serializer>(
+        radians: &Option<f64>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        radians.map(super::in_degrees).serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+        Ok(Option::<f64>::deserialize(from)?.map(f64::to_radians))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

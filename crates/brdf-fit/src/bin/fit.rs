@@ -4,9 +4,14 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use brdf_fit::energy::USUAL_LIMIT_DEG;
+use brdf_fit::model::Model;
 use brdf_fit::output::{resolved, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
-use brdf_fit::report::{Document, Report, write_curves, write_parameters};
+use brdf_fit::report::{
+    Depth, Document, ModelChoice, Report, write_curves, write_models, write_parameters,
+};
+use brdf_fit::robust::Loss;
 use brdf_fit::weights::{AngleWeight, Weights};
 use brdf_fit::{FitError, FitOptions, Measurements, Method, RefractiveIndex};
 use clap::builder::PossibleValuesParser;
@@ -30,6 +35,16 @@ struct Arguments {
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
+    /// The model: lambert, specular, three (the paper's), three+n, smith+n, power+n, ggx, ggx+n,
+    /// beckmann, beckmann+n; or auto, the smallest of the first six that predicts incidences it was
+    /// not fitted to about as well as the best of them does [default: three]
+    #[arg(long, value_name = "MODEL", value_parser = parse_model)]
+    model: Option<ModelArgument>,
+
+    /// Fit the neighbours GGX and Beckmann as well, at the given n and with n free
+    #[arg(long)]
+    compare: bool,
+
     /// Refractive index of the coating relative to air, from 1 to 1e5: one for all wavelengths, or
     /// WAVELENGTH=INDEX pairs in um such as 0.63=1.60,0.85=1.58 (the nearest within 1 % holds)
     /// [default: what the file says in a column n or a line "# refractive_index: 1.5"]
@@ -52,10 +67,29 @@ struct Arguments {
     #[arg(long, value_name = "COUNT", default_value_t = FitOptions::default().max_iterations, value_parser = clap::value_parser!(u64).range(1..))]
     max_iterations: u64,
 
-    /// Weights of the readings in E, beside g1 and g2: none, or sigma for 1/sigma^2 by the column
-    /// sigma_per_sr
+    /// Weights of the readings in E, beside g1 and g2: none; sigma for 1/sigma^2 by the column
+    /// sigma_per_sr, which then also give the errors of the parameters; or solid-angle for the part
+    /// of the hemisphere that each reading stands for
     #[arg(long, value_enum, value_name = "WEIGHTS", default_value = "none")]
     weights: ReadingWeights,
+
+    /// Leave out readings that look less than this away from the source, in degrees
+    #[arg(long, value_name = "DEGREES", default_value = "0", value_parser = parse_limit)]
+    mask_source: f64,
+
+    /// Leave out readings that look less than this away from the mirror direction, in degrees
+    #[arg(long, value_name = "DEGREES", default_value = "0", value_parser = parse_limit)]
+    mask_mirror: f64,
+
+    /// Loss for data with outliers, instead of the square: huber or tukey; the readings that it
+    /// rejects are listed
+    #[arg(long, value_name = "LOSS")]
+    robust: Option<Loss>,
+
+    /// Fit under rho(psi) <= 1, no more light leaving than arriving, for incidences up to DEGREES
+    #[arg(long, value_name = "DEGREES", num_args = 0..=1, require_equals = true,
+          default_missing_value = USUAL_LIMIT, value_parser = parse_energy_limit)]
+    energy_conserving: Option<f64>,
 
     /// Weight g1 over the incidence angle psi, as DEGREES=WEIGHT pairs such as 60=1,80=0.5: linear
     /// between them, constant beyond [default: 1]
@@ -92,6 +126,37 @@ struct Arguments {
 enum ReadingWeights {
     None,
     Sigma,
+    SolidAngle,
+}
+
+/// What `--model` says.
+#[derive(Clone, Copy, PartialEq)]
+enum ModelArgument {
+    Auto,
+    Given(Model),
+}
+
+/// [`USUAL_LIMIT_DEG`] as clap wants it.
+const USUAL_LIMIT: &str = "85";
+const _: () = assert!(USUAL_LIMIT_DEG == 85.0);
+
+fn parse_model(text: &str) -> Result<ModelArgument, String> {
+    match text {
+        "auto" => Ok(ModelArgument::Auto),
+        _ => text
+            .parse()
+            .map(ModelArgument::Given)
+            .map_err(|error| format!("{error}, or auto")),
+    }
+}
+
+fn parse_energy_limit(text: &str) -> Result<f64, String> {
+    let limit = parse_limit(text)?;
+    if limit < 90.0 {
+        Ok(limit)
+    } else {
+        Err("expected degrees from 0 to below 90".to_owned())
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -129,18 +194,57 @@ impl Arguments {
     fn options(&self) -> FitOptions {
         let method = |name: &str| name.parse::<Method>().ok();
         FitOptions {
+            model: match self.model {
+                Some(ModelArgument::Given(model)) => model,
+                _ => Model::Three,
+            },
             refractive_index: self.n.clone(),
             weights: Weights {
                 g1: self.g1.clone().unwrap_or_default(),
                 g2: self.g2.clone().unwrap_or_default(),
                 by_sigma: matches!(self.weights, ReadingWeights::Sigma),
-                ..Weights::default()
+                by_solid_angle: matches!(self.weights, ReadingWeights::SolidAngle),
+                mask_source: self.mask_source.to_radians(),
+                mask_mirror: self.mask_mirror.to_radians(),
             },
             stage1: method(&self.stage1),
             stage1_limit: self.stage1_limit.to_radians(),
             stage2: method(&self.stage2).unwrap_or(Method::LevenbergMarquardt),
             max_iterations: self.max_iterations,
+            robust: self.robust,
+            energy_limit: self.energy_conserving.map(f64::to_radians),
             ..FitOptions::default()
+        }
+    }
+
+    /// How much is worked out beside the fits: nothing that is neither printed nor written.
+    fn depth(&self) -> Depth {
+        let only_parameters = self.params_only && self.json.is_none();
+        match (only_parameters, self.compare) {
+            (true, _) => Depth::Fit,
+            (false, false) => Depth::Assessed,
+            (false, true) => Depth::Compared,
+        }
+    }
+
+    /// The models of each scan: with `--params-only --compare` there is a line for each.
+    fn models(&self) -> Vec<FitOptions> {
+        let options = self.options();
+        if !(self.params_only && self.compare) {
+            return vec![options];
+        }
+        let of = |model| FitOptions {
+            model,
+            ..options.clone()
+        };
+        Model::COMPARED.into_iter().map(of).collect()
+    }
+
+    fn choice(&self) -> ModelChoice {
+        if self.model == Some(ModelArgument::Auto) && !(self.params_only && self.compare) {
+            ModelChoice::Auto
+        } else {
+            ModelChoice::Given
         }
     }
 
@@ -194,7 +298,7 @@ fn main() -> ExitCode {
         return Outcome::BadUsageOrFile.into();
     }
     let (scans, mut outcome) = read_all(&arguments);
-    let results = fit_all(&scans, &arguments.options());
+    let results = fit_all(&scans, &arguments);
     for (report, error) in &results {
         let Some(error) = error else { continue };
         let status = if error.is_usage() {
@@ -240,17 +344,23 @@ fn read_all(arguments: &Arguments) -> (Vec<Measurements>, Outcome) {
     (scans, outcome)
 }
 
-/// Fits all scans side by side, in the order of the files and wavelengths.
-fn fit_all(scans: &[Measurements], options: &FitOptions) -> Vec<(Report, Option<FitError>)> {
+/// Fits all scans side by side, in the order of the files, wavelengths and models.
+fn fit_all(scans: &[Measurements], arguments: &Arguments) -> Vec<(Report, Option<FitError>)> {
+    let models = arguments.models();
+    let (choice, depth) = (arguments.choice(), arguments.depth());
+    let jobs: Vec<(&Measurements, &FitOptions)> = scans
+        .iter()
+        .flat_map(|scan| models.iter().map(move |options| (scan, options)))
+        .collect();
     // Drawn on standard error, and there only if that is a terminal.
-    let bar = ProgressBar::new(scans.len() as u64);
+    let bar = ProgressBar::new(jobs.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("fitting {bar:40} {pos}/{len}") {
         bar.set_style(style);
     }
-    let results = scans
-        .par_iter()
-        .map(|scan| {
-            let result = Report::of(scan, options);
+    let results = jobs
+        .into_par_iter()
+        .map(|(scan, options)| {
+            let result = Report::of_choice(scan, options, choice, depth);
             bar.inc(1);
             result
         })
@@ -267,7 +377,11 @@ fn deliver(
 ) -> Result<(), Vec<String>> {
     let mut failed = Vec::new();
     if let Some(path) = &arguments.curves {
-        let fits = scans.iter().zip(&reports);
+        let models = arguments.models().len();
+        let scans = scans
+            .iter()
+            .flat_map(|scan| std::iter::repeat_n(scan, models));
+        let fits = scans.zip(&reports);
         let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
         let written = write_file(path, |writer| write_curves(fits, writer));
         failed.extend(written.err().map(|error| error.to_string()));
@@ -297,7 +411,11 @@ fn deliver(
 fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
     let mut buffer = Vec::new();
     if arguments.params_only {
-        write_parameters(reports, &mut buffer)?;
+        if arguments.compare || arguments.model.is_some() {
+            write_models(reports, &mut buffer)?;
+        } else {
+            write_parameters(reports, &mut buffer)?;
+        }
     } else {
         let texts: Vec<String> = reports.iter().map(Report::text).collect();
         buffer.extend(texts.join("\n").bytes());

@@ -1,0 +1,331 @@
+//! What a fit is worth: its uncertainty, its prediction of what was not measured, whether it is
+//! physically possible, and whether a smaller model would do.
+
+use brdf_core::fresnel::Dielectric;
+use brdf_core::{AnyBrdf, ModelParameters};
+use serde::{Deserialize, Serialize};
+
+use crate::measurement::Measurements;
+use crate::model::Model;
+use crate::prediction::{Prediction, Spread, bootstrap, leave_one_out};
+use crate::profile::Search;
+use crate::stages::{Fit, FitError, FitOptions, Fitted, fit_scan};
+use crate::uncertainty::{Estimate, Uncertainty};
+
+/// The verdict takes a smaller model when the root mean square error of its prediction is not
+/// larger than that of the best by more than this fraction.
+pub const MARGIN: f64 = 0.1;
+
+/// An assessment takes about so many readings at the most: it fits some hundred times.
+pub const ASSESSED_READINGS: usize = 4096;
+
+/// Incidence angles of the table of reflectances, in degrees.
+const PSI_DEG: [f64; 8] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0];
+
+/// Relative tolerance of the reflectances.
+const TOLERANCE: f64 = 1e-4;
+
+/// What a fit is worth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Assessment {
+    /// How many readings it rests on: all, or about [`ASSESSED_READINGS`] of them.
+    pub readings: usize,
+    /// The spread of each parameter over bootstrap resamples of the incidences; empty where there
+    /// are fewer than 3.
+    pub bootstrap: Vec<Spread>,
+    /// Each incidence predicted from the others; `None` where there is but one.
+    pub prediction: Option<Prediction>,
+    /// Whether the fit is physically possible.
+    pub physics: Physics,
+    /// The ladder of models, and the neighbours where they were asked for.
+    pub models: Vec<Rung>,
+    /// Which model of the ladder suffices; `None` where nothing can be predicted.
+    pub verdict: Option<Verdict>,
+}
+
+/// Energy and facet reflectance of a fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Physics {
+    /// Directional-hemispherical reflectance over the incidence angle.
+    pub reflectance: Vec<Reflectance>,
+    /// The incidence from which the reflectance is above 1, in degrees, looked for up to 89 deg.
+    pub violation_deg: Option<f64>,
+    /// The facet reflectance at normal incidence that k2 implies.
+    pub implied_facet_reflectance: f64,
+    /// The one that the refractive index means, ((n - 1)/(n + 1))^2.
+    pub fresnel_reflectance: f64,
+}
+
+/// The reflectance at one incidence.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Reflectance {
+    /// Incidence angle in degrees.
+    pub psi_deg: f64,
+    /// rho(psi).
+    pub rho: f64,
+}
+
+/// One model fitted to the scan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Rung {
+    /// The model.
+    pub model: Model,
+    /// Its parameters.
+    pub parameters: ModelParameters,
+    /// E over all readings, in percent.
+    pub e_percent: f64,
+    /// E of the prediction of each incidence from the others, in percent.
+    pub predicted_e_percent: Option<f64>,
+    /// Akaike's information criterion with the correction for few readings, less that of the best:
+    /// N ln E + 2 K + 2 K (K + 1)/(N - K - 1), K being the free parameters and the variance. It
+    /// assumes that the terms under the sum of E err independently of each other, normally and
+    /// alike; the readings of a scan rarely do, so that it favours large models.
+    pub aicc_above_best: f64,
+    /// What the data say of each free parameter.
+    pub estimates: Vec<Estimate>,
+    /// The incidence from which the reflectance is above 1, in degrees.
+    pub violation_deg: Option<f64>,
+}
+
+/// Which model of the ladder suffices.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// The smallest model whose prediction is not worse than the best by more than the margin.
+    pub model: Model,
+    /// The model of the ladder that predicts best.
+    pub best: Model,
+    /// [`MARGIN`]: by which fraction the root mean square error may be larger.
+    pub margin: f64,
+}
+
+impl Physics {
+    /// The physics of a fitted model.
+    ///
+    /// `None` where the parameters are outside of the model's domain.
+    pub fn of(model: Model, at: &ModelParameters) -> Option<Self> {
+        let brdf = AnyBrdf::new(model.family(), at).ok()?;
+        let reflectance = PSI_DEG.into_iter().filter_map(|psi_deg| {
+            let rho = brdf.hemispherical_reflectance(psi_deg.to_radians(), TOLERANCE);
+            Some(Reflectance {
+                psi_deg,
+                rho: rho.ok()?,
+            })
+        });
+        Some(Self {
+            reflectance: reflectance.collect(),
+            violation_deg: violation_deg(&brdf),
+            implied_facet_reflectance: brdf.implied_facet_reflectance(),
+            fresnel_reflectance: Dielectric::new(at.n).normal_reflectance(),
+        })
+    }
+}
+
+fn violation_deg(brdf: &AnyBrdf) -> Option<f64> {
+    brdf.energy_violation_angle().map(f64::to_degrees)
+}
+
+/// Assesses a fit of the measurements, and fits the ladder of models beside it; with `compare`
+/// also the neighbours.
+///
+/// Models that cannot be fitted, for want of readings or of a refractive index, are left out.
+pub fn assess(
+    measurements: &Measurements,
+    fit: &Fit,
+    compare: bool,
+) -> Result<Assessment, FitError> {
+    let thinned;
+    let scan = if measurements.readings().len() > ASSESSED_READINGS {
+        thinned = measurements.thinned(ASSESSED_READINGS);
+        &thinned
+    } else {
+        measurements
+    };
+    let models = if compare {
+        Model::ALL.as_slice()
+    } else {
+        Model::LADDER.as_slice()
+    };
+    let mut rungs: Vec<Rung> = models
+        .iter()
+        .filter_map(|&model| rung(scan, model, &fit.options).ok())
+        .collect();
+    let best = rungs
+        .iter()
+        .map(|rung| rung.aicc_above_best)
+        .fold(f64::INFINITY, f64::min);
+    rungs
+        .iter_mut()
+        .for_each(|rung| rung.aicc_above_best -= best);
+
+    let fitted = fit_scan(scan, &fit.options)?;
+    let search = fitted.search();
+    let (model, at) = (fit.model(), fit.at());
+    Ok(Assessment {
+        readings: scan.readings().len(),
+        bootstrap: bootstrap(&fitted.criterion, &search, model, &at),
+        prediction: leave_one_out(&fitted.criterion, &search, model, &at),
+        physics: Physics::of(model, &at).ok_or_else(|| {
+            FitError::Solver("the fit ended outside of the model's domain".to_owned())
+        })?,
+        verdict: verdict(&rungs),
+        models: rungs,
+    })
+}
+
+/// The model of the ladder that suffices for a scan: see [`Verdict`]. The paper's where nothing can
+/// be predicted.
+pub fn sufficient_model(measurements: &Measurements, options: &FitOptions) -> Model {
+    let scan = measurements.thinned(ASSESSED_READINGS);
+    let rungs: Vec<Rung> = Model::LADDER
+        .into_iter()
+        .filter_map(|model| rung(&scan, model, options).ok())
+        .collect();
+    verdict(&rungs).map_or(Model::Three, |verdict| verdict.model)
+}
+
+fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung, FitError> {
+    let options = FitOptions {
+        model,
+        start: None,
+        ..options.clone()
+    };
+    let fitted = fit_scan(scan, &options)?;
+    let (fit, criterion, search) = (&fitted.fit, &fitted.criterion, fitted.search());
+    let at = fit.at();
+    let brdf = AnyBrdf::new(model.family(), &at).ok();
+    Ok(Rung {
+        model,
+        parameters: at,
+        e_percent: fit.e_percent,
+        predicted_e_percent: leave_one_out(criterion, &search, model, &at).map(|p| p.e_percent),
+        aicc_above_best: aicc(fit),
+        estimates: Uncertainty::of(criterion, model, &at, options.weights.by_sigma).estimates,
+        violation_deg: brdf.as_ref().and_then(violation_deg),
+    })
+}
+
+impl Fitted {
+    /// The search of the global check, or a new one where that was left out.
+    fn search(&self) -> Search {
+        let new = || Search::new(&self.criterion, self.fit.model());
+        self.search.clone().unwrap_or_else(new)
+    }
+}
+
+/// See [`Rung::aicc_above_best`].
+fn aicc(fit: &Fit) -> f64 {
+    let readings = (fit.readings - fit.weightless) as f64;
+    let parameters = (fit.model().free().len() + 1) as f64;
+    let spare = readings - parameters - 1.0;
+    if spare <= 0.0 {
+        return f64::INFINITY;
+    }
+    let e = (0.01 * fit.e_percent).max(f64::MIN_POSITIVE);
+    readings * e.ln() + 2.0 * parameters + 2.0 * parameters * (parameters + 1.0) / spare
+}
+
+fn verdict(rungs: &[Rung]) -> Option<Verdict> {
+    let ladder = rungs
+        .iter()
+        .filter(|rung| Model::LADDER.contains(&rung.model));
+    let predicted: Vec<(Model, f64)> = ladder
+        .filter_map(|rung| Some((rung.model, rung.predicted_e_percent?)))
+        .collect();
+    let best = predicted.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    // E is a square: its root may be larger by the margin.
+    let limit = best.1 * (1.0 + MARGIN).powi(2);
+    let smallest = predicted.iter().find(|(_, e)| *e <= limit)?;
+    Some(Verdict {
+        model: smallest.0,
+        best: best.0,
+        margin: MARGIN,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::Parameters;
+
+    use super::*;
+    use crate::synthetic::scan;
+    use crate::{RefractiveIndex, fit};
+
+    /// A scan of the model with 2 % of ripple.
+    fn rippled(k2: f64, kd: f64, n: f64) -> Measurements {
+        let truth = Parameters::new(k2, kd, 0.2).unwrap();
+        let mut readings = scan(truth, n).readings().to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.02 * (2.4 * i as f64).sin();
+        }
+        Measurements::new("test", readings).unwrap()
+    }
+
+    fn assessment(scan: &Measurements, compare: bool) -> Assessment {
+        let options = FitOptions {
+            refractive_index: Some(RefractiveIndex::Same(1.5)),
+            ..FitOptions::default()
+        };
+        assess(scan, &fit(scan, &options).unwrap(), compare).unwrap()
+    }
+
+    #[test]
+    fn the_verdict_names_the_model_that_the_scan_was_made_of() {
+        for (scan, expected) in [
+            (rippled(0.0, 0.3, 1.5), Model::Lambert),
+            (rippled(0.3, 0.0, 1.5), Model::Specular),
+            (rippled(0.3, 0.1, 1.5), Model::Three),
+            (rippled(0.3, 0.1, 1.2), Model::ThreeN),
+        ] {
+            let assessment = assessment(&scan, false);
+            assert_eq!(assessment.verdict.unwrap().model, expected);
+            assert_eq!(assessment.models.len(), Model::LADDER.len());
+        }
+    }
+
+    #[test]
+    fn a_free_parameter_never_raises_e() {
+        let assessment = assessment(&rippled(0.3, 0.1, 1.3), true);
+        let e = |model| {
+            let mut rungs = assessment.models.iter();
+            rungs.find(|rung| rung.model == model).unwrap().e_percent
+        };
+        for (smaller, larger) in [
+            (Model::Lambert, Model::Three),
+            (Model::Specular, Model::Three),
+            (Model::Three, Model::ThreeN),
+            (Model::ThreeN, Model::PowerN),
+            (Model::Ggx, Model::GgxN),
+            (Model::Beckmann, Model::BeckmannN),
+        ] {
+            assert!(e(larger) <= e(smaller) * (1.0 + 1e-9), "{larger} {smaller}");
+        }
+    }
+
+    #[test]
+    fn one_incidence_predicts_nothing() {
+        let one = rippled(0.3, 0.1, 1.5);
+        let readings = one
+            .readings()
+            .iter()
+            .filter(|r| r.psi == 0.0)
+            .copied()
+            .collect();
+        let one = Measurements::new("test", readings).unwrap();
+        let assessment = assessment(&one, false);
+        assert_eq!(assessment.prediction, None);
+        assert_eq!(assessment.verdict, None);
+        assert!(assessment.bootstrap.is_empty());
+    }
+
+    #[test]
+    fn a_large_scan_is_assessed_by_some_of_its_readings() {
+        let mut readings = Vec::new();
+        while readings.len() < 3 * ASSESSED_READINGS {
+            readings.extend_from_slice(rippled(0.3, 0.1, 1.5).readings());
+        }
+        let scan = Measurements::new("test", readings).unwrap();
+        let assessment = assessment(&scan, false);
+        assert!(assessment.readings <= ASSESSED_READINGS);
+        assert_eq!(assessment.prediction.unwrap().incidences.len(), 8);
+    }
+}

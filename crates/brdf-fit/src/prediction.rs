@@ -1,0 +1,174 @@
+//! How well a fit predicts what was not measured: each incidence from the others, and the spread of
+//! the parameters had other incidences been measured.
+
+use brdf_core::ModelParameters;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+use serde::{Deserialize, Serialize};
+
+use crate::criterion::{Criterion, Segment};
+use crate::model::{Model, Parameter};
+use crate::profile::Search;
+use crate::stages::{IncidenceError, polish};
+use crate::words::in_degrees;
+
+/// Resamples of the bootstrap: the ends of its 95 % interval are the 5th and the 196th.
+pub const RESAMPLES: usize = 200;
+
+/// The bootstrap draws the same resamples in every run.
+const SEED: u64 = 2002;
+
+/// The prediction of each incidence from the others.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Prediction {
+    /// E of the prediction of each incidence; `None` where the others do not suffice for a fit, or
+    /// all its readings are zero.
+    pub incidences: Vec<IncidenceError>,
+    /// E of all predictions together, in percent: the sum of their squared errors over that of the
+    /// readings that were predicted.
+    pub e_percent: f64,
+}
+
+/// Predicts each incidence from a fit of the others; `None` where there is but one incidence.
+///
+/// Each fit starts from the lowest point of the search over its own incidences, and from the fit of
+/// all; the lower minimum counts.
+pub(crate) fn leave_one_out(
+    criterion: &Criterion,
+    search: &Search,
+    model: Model,
+    at: &ModelParameters,
+) -> Option<Prediction> {
+    let segments = criterion.segments();
+    let (mut above, mut below) = (0.0, 0.0);
+    let incidences = segments.iter().enumerate().map(|(i, segment)| {
+        let sums = fit_of_others(criterion, search, model, at, i)
+            .map(|others| squares(criterion, segment, &others));
+        if let Some((errors, readings)) = sums {
+            above += errors;
+            below += readings;
+        }
+        IncidenceError {
+            psi_deg: in_degrees(segment.psi),
+            readings: segment.rows.len(),
+            e_percent: sums
+                .and_then(|(errors, readings)| (readings > 0.0).then(|| 100.0 * errors / readings)),
+        }
+    });
+    let incidences = incidences.collect();
+    (below > 0.0).then(|| Prediction {
+        incidences,
+        e_percent: 100.0 * above / below,
+    })
+}
+
+/// The parameters of a fit of all incidences but one.
+fn fit_of_others(
+    criterion: &Criterion,
+    search: &Search,
+    model: Model,
+    at: &ModelParameters,
+    left_out: usize,
+) -> Option<ModelParameters> {
+    let others = criterion.subset(|i| i != left_out).ok()?;
+    if others.len() - others.weightless() <= model.free().len() {
+        return None;
+    }
+    let lowest = search
+        .profile(|i| if i == left_out { 0.0 } else { 1.0 })
+        .lowest();
+    [lowest.parameters, *at]
+        .into_iter()
+        .filter_map(|start| polish(&others, start, model.free()).ok())
+        .min_by(|a, b| others.error(a).total_cmp(&others.error(b)))
+}
+
+/// The squared errors and the squared readings of an incidence.
+fn squares(criterion: &Criterion, segment: &Segment, at: &ModelParameters) -> (f64, f64) {
+    let residuals = criterion.residuals_of(at, segment.rows.clone());
+    residuals.iter().fold((0.0, 0.0), |(above, below), (r, y)| {
+        (above + r * r, below + y * y)
+    })
+}
+
+/// The spread of a parameter over the resamples.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Standard deviation.
+    pub standard_deviation: f64,
+    /// The ends between which 95 % of the resamples lie.
+    pub from: f64,
+    /// Upper end.
+    pub to: f64,
+}
+
+/// Fits [`RESAMPLES`] sets of as many incidences as there are, drawn with repetition from them: the
+/// bootstrap over incidences, which knows that the readings of one incidence err together. Empty
+/// where there are fewer than 3 incidences.
+pub(crate) fn bootstrap(
+    criterion: &Criterion,
+    search: &Search,
+    model: Model,
+    at: &ModelParameters,
+) -> Vec<Spread> {
+    let count = criterion.segments().len();
+    if count < 3 {
+        return Vec::new();
+    }
+    let mut generator = StdRng::seed_from_u64(SEED);
+    let resamples: Vec<ModelParameters> = (0..RESAMPLES)
+        .filter_map(|_| {
+            let mut times = vec![0.0; count];
+            for _ in 0..count {
+                times[generator.random_range(0..count)] += 1.0;
+            }
+            resample(criterion, search, model, at, &times)
+        })
+        .collect();
+    let spread = |&parameter: &Parameter| spread(parameter, &resamples);
+    model.free().iter().filter_map(spread).collect()
+}
+
+fn resample(
+    criterion: &Criterion,
+    search: &Search,
+    model: Model,
+    at: &ModelParameters,
+    times: &[f64],
+) -> Option<ModelParameters> {
+    let mut factors = vec![0.0; criterion.len()];
+    for (segment, times) in criterion.segments().iter().zip(times) {
+        factors[segment.rows.clone()].fill(*times);
+    }
+    let drawn = criterion.reweighted(|row| factors[row]).ok()?;
+    if drawn.len() - drawn.weightless() <= model.free().len() {
+        return None;
+    }
+    let lowest = search.profile(|i| times[i]).lowest().parameters;
+    let start = if drawn.error(&lowest) < drawn.error(at) {
+        lowest
+    } else {
+        *at
+    };
+    polish(&drawn, start, model.free()).ok()
+}
+
+fn spread(parameter: Parameter, resamples: &[ModelParameters]) -> Option<Spread> {
+    let mut values: Vec<f64> = resamples.iter().map(|at| parameter.of(at)).collect();
+    values.sort_by(f64::total_cmp);
+    let count = values.len();
+    if count < RESAMPLES / 2 {
+        return None;
+    }
+    let mean = values.iter().sum::<f64>() / count as f64;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    let tail = count / 40;
+    Some(Spread {
+        parameter,
+        standard_deviation: (squares / (count - 1) as f64).sqrt(),
+        from: values[tail],
+        to: values[count - 1 - tail],
+    })
+}

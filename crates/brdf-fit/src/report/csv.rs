@@ -1,0 +1,176 @@
+//! The parameters and the curves of fits as CSV.
+
+use std::io;
+
+use brdf_core::{AnyBrdf, Geometry, ModelParameters, Parameters};
+
+use super::Report;
+use crate::measurement::Measurements;
+use crate::stages::Fit;
+use crate::words::in_degrees;
+
+/// The header of the CSV for scripts. E is in percent, each over its own stage's readings.
+pub const PARAMETER_COLUMNS: [&str; 12] = [
+    "file",
+    "wavelength_um",
+    "n",
+    "k2",
+    "kd",
+    "k1",
+    "e_percent",
+    "stage1_k2",
+    "stage1_kd",
+    "stage1_k1",
+    "stage1_e_percent",
+    "status",
+];
+
+/// The header of the CSV for scripts where models are chosen or compared: n is the fitted one where
+/// the model has it free, p the exponent.
+pub const MODEL_COLUMNS: [&str; 14] = [
+    "file",
+    "wavelength_um",
+    "n",
+    "model",
+    "k2",
+    "kd",
+    "k1",
+    "e_percent",
+    "stage1_k2",
+    "stage1_kd",
+    "stage1_k1",
+    "stage1_e_percent",
+    "status",
+    "p",
+];
+
+/// Writes the CSV for scripts: one line a fit.
+pub fn write_parameters(reports: &[Report], writer: impl io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(PARAMETER_COLUMNS)?;
+    for report in reports {
+        csv.write_record(record(report))?;
+    }
+    csv.flush()
+}
+
+/// Writes the CSV for scripts with the columns `model` and `p`: one line a fit.
+pub fn write_models(reports: &[Report], writer: impl io::Write) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(MODEL_COLUMNS)?;
+    for report in reports {
+        let fit = report.fit.as_ref();
+        let mut record = record(report);
+        record.insert(
+            3,
+            fit.map_or_else(String::new, |fit| fit.model().to_string()),
+        );
+        record.push(number(fit.map(|fit| fit.p)));
+        csv.write_record(record)?;
+    }
+    csv.flush()
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
+
+/// The line of a fit, in the order of [`PARAMETER_COLUMNS`].
+fn record(report: &Report) -> Vec<String> {
+    let fit = report.fit.as_ref();
+    let stage1 = fit.and_then(|fit| fit.stage1);
+    let parameters =
+        |at: Option<Parameters>| [at.map(|p| p.k2), at.map(|p| p.kd), at.map(|p| p.k1)].map(number);
+    let mut record = vec![
+        report.file.clone(),
+        number(report.wavelength_um),
+        number(fit.map(|fit| fit.n)),
+    ];
+    record.extend(parameters(fit.map(|fit| fit.parameters)));
+    record.push(number(fit.map(|fit| fit.e_percent)));
+    record.extend(parameters(
+        stage1.map(|stage| stage.parameters.parameters()),
+    ));
+    record.push(number(stage1.map(|stage| stage.e_percent.own)));
+    record.push(report.status());
+    record
+}
+
+/// The header of the curves.
+pub const CURVE_COLUMNS: [&str; 10] = [
+    "file",
+    "wavelength_um",
+    "psi_deg",
+    "theta_deg",
+    "phi_deg",
+    "measured_per_sr",
+    "sigma_per_sr",
+    "initial_per_sr",
+    "stage1_per_sr",
+    "fit_per_sr",
+];
+
+/// Writes theory and experiment side by side, incidence by incidence: f_r as measured, of the
+/// initial values, of stage 1 and of the fit, at every reading, in the model's convention.
+pub fn write_curves<'a>(
+    fits: impl Iterator<Item = (&'a Measurements, &'a Fit)>,
+    writer: impl io::Write,
+) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(CURVE_COLUMNS)?;
+    for (measurements, fit) in fits {
+        write_curves_of(measurements, fit, &mut csv)?;
+    }
+    csv.flush()
+}
+
+fn write_curves_of(
+    measurements: &Measurements,
+    fit: &Fit,
+    csv: &mut csv::Writer<impl io::Write>,
+) -> io::Result<()> {
+    let model = |at: ModelParameters| {
+        AnyBrdf::new(fit.model().family(), &at).map_err(|error| io::Error::other(error.to_string()))
+    };
+    let initial = model(ModelParameters {
+        p: 1.0,
+        ..ModelParameters::three(fit.initial.parameters, fit.n)
+    })?;
+    let stage1 = fit
+        .stage1
+        .map(|stage| model(stage.parameters))
+        .transpose()?;
+    let last = model(fit.at())?;
+    let degrees = |angle: f64| in_degrees(angle).to_string();
+    for incidence in measurements.incidences() {
+        let mut order = incidence.readings;
+        let readings = measurements.readings();
+        let key = |i: usize| (readings[i].phi, readings[i].theta);
+        order.sort_by(|&a, &b| {
+            key(a)
+                .partial_cmp(&key(b))
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        for reading in order.into_iter().map(|i| &readings[i]) {
+            let geometry = reading
+                .geometry()
+                .map_err(|error| io::Error::other(error.to_string()))?;
+            let theory = |brdf: &AnyBrdf, at: &Geometry| brdf.value(at).to_string();
+            csv.write_record([
+                measurements.source.clone(),
+                number(fit.wavelength_um),
+                degrees(reading.psi),
+                degrees(reading.theta),
+                degrees(reading.phi),
+                reading.brdf.to_string(),
+                number(reading.sigma),
+                theory(&initial, &geometry),
+                stage1
+                    .as_ref()
+                    .map_or_else(String::new, |brdf| theory(brdf, &geometry)),
+                theory(&last, &geometry),
+            ])?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,182 @@
+//! What a person or a program reads after the fits: the tables, the JSON, the parameters and the
+//! curves as CSV.
+
+mod csv;
+mod text;
+
+pub use csv::{
+    CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, write_curves, write_models, write_parameters,
+};
+
+use serde::{Deserialize, Serialize};
+
+use crate::assessment::{Assessment, assess, sufficient_model};
+use crate::measurement::{Measurement, Measurements, Metadata};
+use crate::solver::Ending;
+use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, Fitted, fit_scan};
+use crate::uncertainty::Uncertainty;
+use crate::warning::{Warning, warnings};
+
+/// The result of one wavelength of one file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// The file.
+    pub file: String,
+    /// What the file says of itself.
+    pub metadata: Metadata,
+    /// Columns of the file that were not used.
+    pub ignored_columns: Vec<String>,
+    /// Wavelength in micrometres, where the file states one.
+    pub wavelength_um: Option<f64>,
+    /// How many readings there are.
+    pub readings: usize,
+    /// The fit, where there is one.
+    pub fit: Option<Fit>,
+    /// Why there is none.
+    pub error: Option<String>,
+    /// What to know before trusting it.
+    pub warnings: Vec<Warning>,
+    /// How far its parameters can be trusted.
+    #[serde(default)]
+    pub uncertainty: Option<Uncertainty>,
+    /// What it is worth.
+    #[serde(default)]
+    pub assessment: Option<Assessment>,
+    /// The readings that a robust fit rejects.
+    #[serde(default)]
+    pub rejected: Vec<Measurement>,
+}
+
+/// How much a report says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Depth {
+    /// The fit alone.
+    Fit,
+    /// The fit, what it is worth, and the ladder of models.
+    Assessed,
+    /// The neighbours as well.
+    Compared,
+}
+
+/// The model of a report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelChoice {
+    /// That of the options.
+    Given,
+    /// The smallest of the ladder that predicts well enough: see
+    /// [`Verdict`](crate::assessment::Verdict).
+    Auto,
+}
+
+/// The JSON document of a run.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Document {
+    /// [`FORMAT_VERSION`] of the program that wrote it.
+    pub format_version: u32,
+    /// One report for each file and wavelength.
+    pub reports: Vec<Report>,
+}
+
+impl Document {
+    /// A document of this version.
+    pub fn new(reports: Vec<Report>) -> Self {
+        Self {
+            format_version: FORMAT_VERSION,
+            reports,
+        }
+    }
+}
+
+impl Report {
+    /// Fits one wavelength and reports on it. The error is returned beside the report, which holds
+    /// its words.
+    pub fn of(
+        measurements: &Measurements,
+        options: &FitOptions,
+        depth: Depth,
+    ) -> (Self, Option<FitError>) {
+        let mut report = Self {
+            file: measurements.source.clone(),
+            metadata: measurements.metadata.clone(),
+            ignored_columns: measurements.ignored_columns.clone(),
+            wavelength_um: measurements.wavelengths().first().copied().flatten(),
+            readings: measurements.readings().len(),
+            warnings: Vec::new(),
+            fit: None,
+            error: None,
+            uncertainty: None,
+            assessment: None,
+            rejected: Vec::new(),
+        };
+        let error = match fit_scan(measurements, options) {
+            Ok(fitted) => report.take(measurements, fitted, depth).err(),
+            Err(error) => Some(error),
+        };
+        report.error = error.as_ref().map(ToString::to_string);
+        (report, error)
+    }
+
+    /// [`of`](Self::of) a model that is chosen by the scan itself.
+    pub fn of_choice(
+        measurements: &Measurements,
+        options: &FitOptions,
+        choice: ModelChoice,
+        depth: Depth,
+    ) -> (Self, Option<FitError>) {
+        match choice {
+            ModelChoice::Given => Self::of(measurements, options, depth),
+            ModelChoice::Auto => {
+                // What cannot be fitted at all is told by the paper's model.
+                let model = sufficient_model(measurements, options);
+                let options = FitOptions {
+                    model,
+                    ..options.clone()
+                };
+                Self::of(measurements, &options, depth)
+            }
+        }
+    }
+
+    fn take(
+        &mut self,
+        measurements: &Measurements,
+        fitted: Fitted,
+        depth: Depth,
+    ) -> Result<(), FitError> {
+        let uncertainty = Uncertainty::of_fit(&fitted);
+        self.warnings = warnings(measurements, &fitted.fit, &uncertainty);
+        self.uncertainty = Some(uncertainty);
+        let fit = self.fit.insert(fitted.fit);
+        if let Some(robust) = &fit.robust {
+            let readings = measurements.readings();
+            self.rejected = robust
+                .rejected
+                .iter()
+                .map(|r| readings[r.reading])
+                .collect();
+        }
+        if depth > Depth::Fit {
+            let compare = depth == Depth::Compared;
+            self.assessment = Some(assess(measurements, fit, compare)?);
+        }
+        Ok(())
+    }
+
+    /// One word on how the fit ended: `ok`; `global`, where the global check took a lower minimum;
+    /// `iteration-limit`; or `failed: ` and why.
+    pub fn status(&self) -> String {
+        let Some(fit) = &self.fit else {
+            return format!("failed: {}", self.error.as_deref().unwrap_or("no fit"));
+        };
+        let taken = fit
+            .global_check
+            .as_ref()
+            .is_some_and(|check| check.lower_minimum_taken);
+        match fit.stage2.ending {
+            _ if taken => "global",
+            Ending::IterationLimit => "iteration-limit",
+            _ => "ok",
+        }
+        .to_owned()
+    }
+}

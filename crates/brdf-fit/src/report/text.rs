@@ -1,0 +1,484 @@
+//! The tables that a person reads.
+
+use std::fmt::Write as _;
+
+use brdf_core::Parameters;
+
+use super::Report;
+use crate::assessment::{Assessment, Physics, Verdict};
+use crate::measurement::Measurement;
+use crate::model::{K1_RANGE, Model, Parameter};
+use crate::robust::REJECTED;
+use crate::stages::{Fit, OwnAndAll, Stage};
+use crate::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
+use crate::words::{counted, in_degrees};
+
+impl Report {
+    /// The table that a person reads.
+    pub fn text(&self) -> String {
+        let mut text = self.heading();
+        if let Some(fit) = &self.fit {
+            text += &stage_table(fit);
+            text += &incidence_table(fit, self.assessment.as_ref());
+            text += &global_check_line(fit);
+            text += &options_lines(fit, &self.rejected);
+            if let Some(uncertainty) = &self.uncertainty {
+                text += &parameter_table(uncertainty, self.assessment.as_ref());
+            }
+            if let Some(assessment) = &self.assessment {
+                text += &prediction_line(fit, assessment);
+                text += &model_table(assessment);
+                text += &physics_lines(&assessment.physics, fit);
+            }
+        } else {
+            let error = self.error.as_deref().unwrap_or("no fit");
+            let _ = writeln!(text, "  error: {error}");
+        }
+        for warning in &self.warnings {
+            let _ = writeln!(text, "  warning: {warning}");
+        }
+        if !self.ignored_columns.is_empty() {
+            let _ = writeln!(
+                text,
+                "  columns not used: {}",
+                self.ignored_columns.join(", ")
+            );
+        }
+        text
+    }
+
+    fn heading(&self) -> String {
+        let mut text = self.file.clone();
+        if let Some(sample) = self.metadata.get("sample") {
+            let _ = write!(text, ": {sample}");
+        }
+        text.push('\n');
+        let wavelength = self
+            .wavelength_um
+            .map_or_else(|| "wavelength not stated".to_owned(), |w| format!("{w} um"));
+        let _ = write!(text, "  {wavelength}, ");
+        if let Some(fit) = &self.fit {
+            let fitted = if fit.model().frees(Parameter::N) {
+                " (fitted)"
+            } else {
+                ""
+            };
+            let _ = write!(text, "n = {}{fitted}, ", shortest(fit.n));
+            if fit.model() != Model::Three {
+                let _ = write!(
+                    text,
+                    "model {}: {}, ",
+                    fit.model(),
+                    fit.model().description()
+                );
+            }
+        }
+        let _ = writeln!(text, "{}", counted(self.readings, "reading"));
+        text
+    }
+}
+
+fn stage_table(fit: &Fit) -> String {
+    let mut text = format!(
+        "\n  {:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{:>10}{:>7}{:>7}{:>9}  ended by\n",
+        "", "k2", "kD", "k1", "E own %", "E all %", "readings", "iter.", "eval.", "time us"
+    );
+    let mut line = |name: &str, p: &Parameters, e: OwnAndAll, rest: &str| {
+        let row = format!(
+            "  {name:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{rest}",
+            digits(p.k2),
+            digits(p.kd),
+            digits(p.k1),
+            digits(e.own),
+            digits(e.all)
+        );
+        let _ = writeln!(text, "{}", row.trim_end());
+    };
+    let work = |stage: &Stage| {
+        format!(
+            "{:>10}{:>7}{:>7}{:>9.1}  {}: {}",
+            stage.readings,
+            stage.iterations,
+            stage.evaluations,
+            1e6 * stage.seconds,
+            stage.method.short_name(),
+            stage.ending
+        )
+    };
+    line(
+        "initial",
+        &fit.initial.parameters,
+        fit.initial_e_percent,
+        "",
+    );
+    if let Some(stage) = &fit.stage1 {
+        line(
+            "stage 1",
+            &stage.parameters.parameters(),
+            stage.e_percent,
+            &work(stage),
+        );
+    }
+    line(
+        "stage 2",
+        &fit.stage2.parameters.parameters(),
+        fit.stage2.e_percent,
+        &work(&fit.stage2),
+    );
+    if fit.at() != fit.stage2.parameters {
+        let both = OwnAndAll {
+            own: fit.e_percent,
+            all: fit.e_percent,
+        };
+        line("result", &fit.parameters, both, "");
+    }
+    if let Some(reason) = &fit.stage1_left_out {
+        let _ = writeln!(text, "  stage 1 left out: {reason}");
+    } else if fit.stage1.is_some() {
+        let limit = in_degrees(fit.options.stage1_limit);
+        let _ = writeln!(text, "  stage 1: psi <= {limit} deg");
+    }
+    let _ = writeln!(text, "  initial values: {}", fit.initial);
+    let weights = fit.options.weights.to_string();
+    if !weights.is_empty() {
+        let _ = writeln!(text, "  readings weighted by {weights}");
+    }
+    let Parameters { k2, kd, k1 } = fit.parameters;
+    for (on_bound, name) in [
+        (k2 == 0.0, "k2 = 0"),
+        (kd == 0.0, "kD = 0"),
+        (
+            k2 > 0.0 && k1 == K1_RANGE.0,
+            "k1 = 1e-6, the smallest that is searched",
+        ),
+        (
+            k2 > 0.0 && k1 == K1_RANGE.1,
+            "k1 = 1e3, the largest that is searched",
+        ),
+    ] {
+        if on_bound {
+            let _ = writeln!(text, "  on its bound: {name}");
+        }
+    }
+    text
+}
+
+fn incidence_table(fit: &Fit, assessment: Option<&Assessment>) -> String {
+    const A_ROW: usize = 9;
+    let mut text = String::new();
+    for (i, chunk) in fit.incidences.chunks(A_ROW).enumerate() {
+        let row_start = i * A_ROW;
+        let row = |name: &str, cell: &dyn Fn(usize) -> String| {
+            let mut row = format!("  {name:<9}");
+            for i in 0..chunk.len() {
+                let _ = write!(row, "{:>13}", cell(i));
+            }
+            row.push('\n');
+            row
+        };
+        text.push('\n');
+        text += &row("psi deg", &|i| chunk[i].psi_deg.to_string());
+        text += &row("readings", &|i| chunk[i].readings.to_string());
+        text += &row("E %", &|i| {
+            chunk[i].e_percent.map_or_else(|| "-".to_owned(), digits)
+        });
+        if let Some(prediction) = assessment.and_then(|a| a.prediction.as_ref()) {
+            let predicted = prediction.incidences.get(row_start..).unwrap_or_default();
+            text += &row("predicted", &|i| {
+                let e = predicted.get(i).and_then(|incidence| incidence.e_percent);
+                e.map_or_else(|| "-".to_owned(), digits)
+            });
+        }
+    }
+    text.push('\n');
+    text
+}
+
+fn global_check_line(fit: &Fit) -> String {
+    match &fit.global_check {
+        None => "  global check: left out\n".to_owned(),
+        Some(check) if check.lower_minimum_taken => format!(
+            "  global check: a lower minimum exists and was taken (E {} % instead of {} %)\n",
+            digits(fit.e_percent),
+            digits(check.stage2_e_percent)
+        ),
+        Some(check) => format!(
+            "  global check: no lower minimum for k1 from {:.0e} to {:.0e} ({} widths)\n",
+            check
+                .profile
+                .first()
+                .map_or(0.0, |point| point.parameters.k1),
+            check
+                .profile
+                .last()
+                .map_or(0.0, |point| point.parameters.k1),
+            check.profile.len()
+        ),
+    }
+}
+
+/// What other options than the paper's did.
+fn options_lines(fit: &Fit, rejected: &[Measurement]) -> String {
+    let mut text = String::new();
+    if let Some(robust) = &fit.robust {
+        let _ = writeln!(
+            text,
+            "  robust fit ({} loss): {} with less than half their weight; least squares has E = {} %",
+            robust.loss,
+            counted(robust.reduced, "reading"),
+            digits(robust.least_squares_e_percent)
+        );
+        let _ = writeln!(
+            text,
+            "  {} rejected, more than {REJECTED} standard deviations off",
+            counted(robust.rejected.len(), "reading")
+        );
+        for (reading, rejected) in rejected.iter().zip(&robust.rejected) {
+            let _ = writeln!(
+                text,
+                "    psi {} deg, theta {} deg, phi {} deg: {} 1/sr, {:+.1} standard deviations off",
+                in_degrees(reading.psi),
+                in_degrees(reading.theta),
+                in_degrees(reading.phi),
+                reading.brdf,
+                rejected.deviations
+            );
+        }
+    }
+    if let Some(energy) = &fit.energy {
+        let limit = energy.limit_deg;
+        let _ = if energy.binding {
+            writeln!(
+                text,
+                "  energy: fitted under rho(psi) <= 1 up to {limit} deg, which raises E from {} % to {} %",
+                digits(energy.free_e_percent),
+                digits(fit.e_percent)
+            )
+        } else {
+            writeln!(
+                text,
+                "  energy: rho(psi) <= 1 up to {limit} deg holds without any change"
+            )
+        };
+    }
+    text
+}
+
+fn parameter_table(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> String {
+    let mut text = format!(
+        "\n  {:<9}{:>13}{:>13}{:>26}{:>26}{:>26}\n",
+        "", "value", "1 sigma", "68 %", "95 %", "95 % over incidences"
+    );
+    let bootstrap = |parameter: Parameter| {
+        let spread = assessment?
+            .bootstrap
+            .iter()
+            .find(|s| s.parameter == parameter)?;
+        let digits = |x: f64| rounded(x, spread.standard_deviation);
+        Some(format!("{} ... {}", digits(spread.from), digits(spread.to)))
+    };
+    for estimate in &uncertainty.estimates {
+        let name = estimate.parameter.to_string();
+        let over = bootstrap(estimate.parameter).unwrap_or_else(|| "-".to_owned());
+        let _ = match &estimate.knowledge {
+            Knowledge::Determined {
+                standard_error,
+                interval_68,
+                interval_95,
+            } => {
+                let digits = |x: f64| rounded(x, *standard_error);
+                let interval = |i: &Interval| interval_text(i, &digits);
+                writeln!(
+                    text,
+                    "  {name:<9}{:>13}{:>13}{:>26}{:>26}{over:>26}",
+                    digits(estimate.value),
+                    digits(*standard_error),
+                    interval(interval_68),
+                    interval(interval_95),
+                )
+            }
+            Knowledge::OnBound { interval_95 } => {
+                let value = estimate.value;
+                let width = |end: Option<f64>| end.map_or(0.0, |end| (end - value).abs());
+                let error = 0.3 * width(interval_95.from).max(width(interval_95.to));
+                let interval = interval_text(interval_95, &|x| rounded(x, error));
+                writeln!(
+                    text,
+                    "  {name:<9}{:>13}{:>13}{:>26}{interval:>26}{over:>26}",
+                    digits(value),
+                    "on its bound",
+                    ""
+                )
+            }
+            Knowledge::NotDetermined { reason, .. } => {
+                writeln!(text, "  {name:<9}not determined: {reason}")
+            }
+        };
+    }
+    text += &noise_line(uncertainty);
+    text
+}
+
+fn interval_text(interval: &Interval, digits: &dyn Fn(f64) -> String) -> String {
+    let end = |end: Option<f64>| end.map_or_else(|| "?".to_owned(), digits);
+    format!("{} ... {}", end(interval.from), end(interval.to))
+}
+
+fn noise_line(uncertainty: &Uncertainty) -> String {
+    let degrees = counted(uncertainty.degrees_of_freedom, "degree");
+    let noise = match uncertainty.noise {
+        Noise::Residuals => format!("errors from the residuals, {degrees} of freedom"),
+        Noise::Given { reduced_chi_square } => format!(
+            "errors as the scan states them; reduced chi^2 {reduced_chi_square:.2}, {degrees} of freedom"
+        ),
+    };
+    let correlations = uncertainty.correlations();
+    let mut pairs = Vec::new();
+    for (i, first) in uncertainty.covered.iter().enumerate() {
+        for (j, second) in uncertainty.covered.iter().enumerate().skip(i + 1) {
+            if let Some(value) = correlations.get(i).and_then(|row| row.get(j)) {
+                pairs.push(format!("{first}-{second} {value:+.2}"));
+            }
+        }
+    }
+    if pairs.is_empty() {
+        return format!("  {noise}\n");
+    }
+    format!("  {noise}; correlations {}\n", pairs.join(", "))
+}
+
+fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
+    let mut text = String::new();
+    if assessment.readings < fit.readings {
+        let _ = writeln!(
+            text,
+            "\n  assessed with {} of the {} readings, evenly over each incidence",
+            assessment.readings, fit.readings
+        );
+    }
+    let _ = match &assessment.prediction {
+        Some(prediction) => writeln!(
+            text,
+            "\n  prediction of each incidence from the others: E = {} % (the fit: {} %)",
+            digits(prediction.e_percent),
+            digits(fit.e_percent)
+        ),
+        None => writeln!(text, "\n  prediction: a single incidence predicts nothing"),
+    };
+    text
+}
+
+/// The ladder of models with its verdict.
+fn model_table(assessment: &Assessment) -> String {
+    let mut text = format!(
+        "\n  {:<11}{:>13}{:>13}{:>10}  parameters (95 % interval)\n",
+        "model", "E %", "predicted %", "AICc"
+    );
+    for rung in &assessment.models {
+        let predicted = rung
+            .predicted_e_percent
+            .map_or_else(|| "-".to_owned(), digits);
+        let parameters: Vec<String> = rung
+            .estimates
+            .iter()
+            .map(|estimate| format!("{} {estimate}", estimate.parameter))
+            .collect();
+        let energy = rung
+            .violation_deg
+            .map_or_else(String::new, |psi| format!("; rho > 1 from {psi:.0} deg"));
+        let _ = writeln!(
+            text,
+            "  {:<11}{:>13}{predicted:>13}{:>+10.1}  {}{energy}",
+            rung.model.name(),
+            digits(rung.e_percent),
+            rung.aicc_above_best,
+            parameters.join(", ")
+        );
+    }
+    text += "  (predicted: E of each incidence predicted from the others; AICc: above the best, for independent normal errors)\n";
+    if let Some(verdict) = &assessment.verdict {
+        let _ = writeln!(text, "  verdict: {}", verdict_text(verdict));
+    }
+    text
+}
+
+/// The verdict as a sentence.
+fn verdict_text(verdict: &Verdict) -> String {
+    let what = format!(
+        "{} suffices ({})",
+        verdict.model,
+        verdict.model.description()
+    );
+    if verdict.model == verdict.best {
+        format!("{what}; no model of the ladder predicts better")
+    } else {
+        format!(
+            "{what}: it is the smallest whose prediction errs by no more than {:.0} % more (root mean square) than that of {}, the best",
+            100.0 * verdict.margin,
+            verdict.best
+        )
+    }
+}
+
+fn physics_lines(physics: &Physics, fit: &Fit) -> String {
+    let values: Vec<String> = physics
+        .reflectance
+        .iter()
+        .map(|point| format!("{:.3} at {}", point.rho, point.psi_deg))
+        .collect();
+    let mut text = format!("  reflectance rho(psi): {} deg", values.join(", "));
+    text += &physics.violation_deg.map_or_else(
+        || "; below 1 up to 89 deg\n".to_owned(),
+        |psi| format!("; above 1 from {psi:.1} deg on\n"),
+    );
+    if fit.parameters.k2 > 0.0 {
+        let _ = writeln!(
+            text,
+            "  facet reflectance at normal incidence: k2 implies {:.4}, n = {} means {:.4}",
+            physics.implied_facet_reflectance,
+            shortest(fit.n),
+            physics.fresnel_reflectance
+        );
+    }
+    text
+}
+
+/// A number as it was written, or six significant digits where it has more.
+fn shortest(value: f64) -> String {
+    let plain = value.to_string();
+    let six = digits(value);
+    if plain.len() < six.len() { plain } else { six }
+}
+
+/// Six significant digits, in whichever notation is short.
+fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{value:.5e}");
+    let exponent = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok());
+    match exponent {
+        Some(exponent @ -4..=5) => {
+            let decimals = usize::try_from(5_i32 - exponent).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_significant_digits() {
+        assert_eq!(digits(0.0), "0");
+        assert_eq!(digits(0.022_859_766), "0.0228598");
+        assert_eq!(digits(301.502_668), "301.503");
+        assert_eq!(digits(-2.839_658), "-2.83966");
+        assert_eq!(digits(123_456_789.0), "1.23457e8");
+        assert_eq!(digits(1.5e-9), "1.50000e-9");
+    }
+}

@@ -8,6 +8,7 @@
 
 pub mod data;
 pub mod picture;
+pub mod samples;
 pub mod textbook;
 
 use std::path::{Path, PathBuf};

@@ -1,6 +1,8 @@
 //! What a fit is worth: its uncertainty, its prediction of what was not measured, whether it is
 //! physically possible, and whether a smaller model would do.
 
+use std::fmt;
+
 use brdf_core::fresnel::Dielectric;
 use brdf_core::{AnyBrdf, ModelParameters};
 use serde::{Deserialize, Serialize};
@@ -11,6 +13,7 @@ use crate::prediction::{Prediction, Spread, bootstrap, leave_one_out};
 use crate::profile::Search;
 use crate::stages::{Fit, FitError, FitOptions, Fitted, fit_scan};
 use crate::uncertainty::{Estimate, Uncertainty};
+use crate::warning::NOT_DESCRIBED_PERCENT;
 
 /// The verdict takes a smaller model when the root mean square error of its prediction is not
 /// larger than that of the best by more than this fraction.
@@ -90,12 +93,41 @@ pub struct Rung {
 /// Which model of the ladder suffices.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The smallest model whose prediction is not worse than the best by more than the margin.
-    pub model: Model,
+    /// The smallest model whose prediction is not worse than the best by more than the margin;
+    /// `None` where even the best is no prediction.
+    pub model: Option<Model>,
     /// The model of the ladder that predicts best.
     pub best: Model,
+    /// E of its prediction, in percent.
+    pub best_e_percent: f64,
     /// [`MARGIN`]: by which fraction the root mean square error may be larger.
     pub margin: f64,
+}
+
+/// The verdict as a sentence.
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(model) = self.model else {
+            return write!(
+                f,
+                "no model of the ladder predicts incidences it was not fitted to: the best, {}, \
+                 with E = {:.3} %",
+                self.best, self.best_e_percent
+            );
+        };
+        write!(f, "{model} suffices ({})", model.description())?;
+        if model == self.best {
+            write!(f, "; no model of the ladder predicts better")
+        } else {
+            write!(
+                f,
+                ": it is the smallest whose prediction errs by no more than {:.0} % more (root \
+                 mean square) than that of {}, the best",
+                100.0 * self.margin,
+                self.best
+            )
+        }
+    }
 }
 
 impl Physics {
@@ -153,9 +185,9 @@ pub fn assess(
         .iter()
         .map(|rung| rung.aicc_above_best)
         .fold(f64::INFINITY, f64::min);
-    rungs
-        .iter_mut()
-        .for_each(|rung| rung.aicc_above_best -= best);
+    for rung in &mut rungs {
+        rung.aicc_above_best -= best;
+    }
 
     let fitted = fit_scan(scan, &fit.options)?;
     let search = fitted.search();
@@ -180,7 +212,9 @@ pub fn sufficient_model(measurements: &Measurements, options: &FitOptions) -> Mo
         .into_iter()
         .filter_map(|model| rung(&scan, model, options).ok())
         .collect();
-    verdict(&rungs).map_or(Model::Three, |verdict| verdict.model)
+    verdict(&rungs)
+        .and_then(|verdict| verdict.model)
+        .unwrap_or(Model::Three)
 }
 
 fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung, FitError> {
@@ -236,8 +270,9 @@ fn verdict(rungs: &[Rung]) -> Option<Verdict> {
     let limit = best.1 * (1.0 + MARGIN).powi(2);
     let smallest = predicted.iter().find(|(_, e)| *e <= limit)?;
     Some(Verdict {
-        model: smallest.0,
+        model: (best.1 <= NOT_DESCRIBED_PERCENT).then_some(smallest.0),
         best: best.0,
+        best_e_percent: best.1,
         margin: MARGIN,
     })
 }
@@ -277,7 +312,7 @@ mod tests {
             (rippled(0.3, 0.1, 1.2), Model::ThreeN),
         ] {
             let assessment = assessment(&scan, false);
-            assert_eq!(assessment.verdict.unwrap().model, expected);
+            assert_eq!(assessment.verdict.unwrap().model, Some(expected));
             assert_eq!(assessment.models.len(), Model::LADDER.len());
         }
     }

@@ -201,6 +201,7 @@ impl Measurements {
 
     /// At most about `limit` of the readings, evenly over each incidence in the order of the file,
     /// and at least one of each.
+    #[must_use]
     pub fn thinned(&self, limit: usize) -> Self {
         let step = self.readings.len().div_ceil(limit.max(1)).max(1);
         let incidences = self.incidences();

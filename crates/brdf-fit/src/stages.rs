@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::criterion::{Criterion, CriterionError, Segment};
 use crate::energy::{EnergyConstraint, conserve};
 use crate::initial::{InitialValues, initial_values};
-use crate::measurement::{Incidence, Measurements};
+use crate::measurement::{Incidence, Measurement, Measurements};
 use crate::model::{Model, Parameter, USUAL_N};
 use crate::profile::{ProfilePoint, Search};
 use crate::refractive_index::RefractiveIndex;
@@ -305,28 +305,7 @@ pub(crate) fn fit_scan(
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
     let own = first.criterion.as_ref().unwrap_or(&all);
-    let (initial, start) = match options.start {
-        Some(start) => {
-            let initial = InitialValues {
-                parameters: start.parameters(),
-                weights: None,
-                width: None,
-            };
-            (initial, start)
-        }
-        None => {
-            let initial = initial_values(readings, first.incidences, n, own);
-            (initial, ModelParameters::three(initial.parameters, n))
-        }
-    };
-    let start = model.start(ModelParameters {
-        n: if model.frees(Parameter::N) {
-            start.n
-        } else {
-            n
-        },
-        ..start
-    });
+    let (initial, start) = starting_point(readings, first.incidences, n, own, options);
 
     let stage1 = match (options.stage1, &first.left_out) {
         (Some(method), None) => Some(run(method, own, &all, start, options)?),
@@ -413,6 +392,33 @@ fn after_the_stages(
         });
     }
     Ok(after)
+}
+
+/// The initial values, and the start of the first stage: they with what the model has besides.
+fn starting_point(
+    readings: &[Measurement],
+    incidences: &[Incidence],
+    n: f64,
+    own: &Criterion,
+    options: &FitOptions,
+) -> (InitialValues, ModelParameters) {
+    let model = options.model;
+    let Some(given) = options.start else {
+        let initial = initial_values(readings, incidences, n, own);
+        let start = ModelParameters::three(initial.parameters, n);
+        return (initial, model.start(start));
+    };
+    let initial = InitialValues {
+        parameters: given.parameters(),
+        weights: None,
+        width: None,
+    };
+    let n = if model.frees(Parameter::N) {
+        given.n
+    } else {
+        n
+    };
+    (initial, model.start(ModelParameters { n, ..given }))
 }
 
 /// The refractive index that the options or the measurements state, or the usual one where it is
@@ -567,14 +573,15 @@ fn check_globally(
             parameters = polished;
         }
     }
-    let several_n = options.model.frees(Parameter::N);
     let check = GlobalCheck {
         lower_minimum_taken: parameters != stage2.parameters,
         stage2_e_percent: stage2.e_percent.all,
         profile: profile.along(Parameter::K1),
-        profile_n: several_n
-            .then(|| profile.along(Parameter::N))
-            .unwrap_or_default(),
+        profile_n: if options.model.frees(Parameter::N) {
+            profile.along(Parameter::N)
+        } else {
+            Vec::new()
+        },
         seconds: 0.0,
     };
     Ok((parameters, check))
@@ -600,7 +607,6 @@ pub(crate) fn errors_by_incidence(all: &Criterion, at: &ModelParameters) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::Measurement;
     use crate::report::Depth;
     use crate::synthetic::scan;
 

@@ -468,18 +468,15 @@ impl Profiler<'_> {
             } else {
                 outside = Some((trial, found));
             }
-            trial = match outside {
-                Some((x, above)) => {
-                    let secant = inside + (x - inside) * (-below / (above - below));
-                    // Not next to an end of the bracket, where the secant method creeps.
-                    let (near, far) = (inside + 0.1 * (x - inside), x - 0.1 * (x - inside));
-                    secant.clamp(near.min(far), near.max(far))
-                }
-                None => {
-                    let reach = (inside - start).abs();
-                    let factor = (1.1 * quantile / (quantile + below).max(1e-9)).clamp(1.5, 4.0);
-                    start + sign * reach * factor
-                }
+            trial = if let Some((x, above)) = outside {
+                let secant = inside + (x - inside) * (-below / (above - below));
+                // Not next to an end of the bracket, where the secant method creeps.
+                let (near, far) = (inside + 0.1 * (x - inside), x - 0.1 * (x - inside));
+                secant.clamp(near.min(far), near.max(far))
+            } else {
+                let reach = (inside - start).abs();
+                let factor = (1.1 * quantile / (quantile + below).max(1e-9)).clamp(1.5, 4.0);
+                start + sign * reach * factor
             };
         }
         Some(scale.value(outside.map_or(inside, |(x, _)| 0.5 * (inside + x))))

@@ -17,7 +17,7 @@ use crate::words::counted;
 
 /// Above this E the model does not describe a sample: the readings are missed by a third of their
 /// size (root of 10 %). The paper's own fits have 1.7 ... 6.5 %.
-const NOT_DESCRIBED_PERCENT: f64 = 10.0;
+pub const NOT_DESCRIBED_PERCENT: f64 = 10.0;
 
 /// Fewer incidences say little of the dependence on the incidence angle.
 const FEW_INCIDENCES: usize = 3;

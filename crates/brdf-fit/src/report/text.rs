@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use brdf_core::Parameters;
 
 use super::Report;
-use crate::assessment::{Assessment, Physics, Verdict};
+use crate::assessment::{Assessment, Physics};
 use crate::measurement::Measurement;
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::robust::REJECTED;
@@ -397,27 +397,9 @@ fn model_table(assessment: &Assessment) -> String {
     }
     text += "  (predicted: E of each incidence predicted from the others; AICc: above the best, for independent normal errors)\n";
     if let Some(verdict) = &assessment.verdict {
-        let _ = writeln!(text, "  verdict: {}", verdict_text(verdict));
+        let _ = writeln!(text, "  verdict: {verdict}");
     }
     text
-}
-
-/// The verdict as a sentence.
-fn verdict_text(verdict: &Verdict) -> String {
-    let what = format!(
-        "{} suffices ({})",
-        verdict.model,
-        verdict.model.description()
-    );
-    if verdict.model == verdict.best {
-        format!("{what}; no model of the ladder predicts better")
-    } else {
-        format!(
-            "{what}: it is the smallest whose prediction errs by no more than {:.0} % more (root mean square) than that of {}, the best",
-            100.0 * verdict.margin,
-            verdict.best
-        )
-    }
 }
 
 fn physics_lines(physics: &Physics, fit: &Fit) -> String {

@@ -132,11 +132,13 @@ impl AnyBrdf {
     }
 
     /// f_r in 1/sr.
+    #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         each!(self, brdf => brdf.value(geometry))
     }
 
     /// The derivatives of f_r by (k2, kD, k1, n, p), in 1/sr per unit.
+    #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 5] {
         each!(self, brdf => {
             let [k2, kd, k1] = brdf.gradient(geometry);

@@ -33,6 +33,7 @@ pub mod initial;
 pub mod measurement;
 pub mod model;
 pub mod output;
+pub mod plot;
 pub mod prediction;
 pub mod profile;
 pub mod read;

@@ -9,7 +9,8 @@ use brdf_fit::model::Model;
 use brdf_fit::output::{resolved, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{
-    Depth, Document, ModelChoice, Report, write_curves, write_models, write_parameters,
+    Depth, Document, ModelChoice, Report, write_curves, write_folder, write_models,
+    write_parameters,
 };
 use brdf_fit::robust::Loss;
 use brdf_fit::weights::{AngleWeight, Weights};
@@ -117,6 +118,11 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     curves: Option<PathBuf>,
 
+    /// Draw every fit into this folder, as SVG and PNG, with a page report.html that holds the
+    /// pictures and the tables
+    #[arg(long, value_name = "FOLDER")]
+    plot: Option<PathBuf>,
+
     /// Print the parameters as CSV, one line a fit, instead of the tables
     #[arg(long)]
     params_only: bool,
@@ -219,7 +225,7 @@ impl Arguments {
 
     /// How much is worked out beside the fits: nothing that is neither printed nor written.
     fn depth(&self) -> Depth {
-        let only_parameters = self.params_only && self.json.is_none();
+        let only_parameters = self.params_only && self.json.is_none() && self.plot.is_none();
         match (only_parameters, self.compare) {
             (true, _) => Depth::Fit,
             (false, false) => Depth::Assessed,
@@ -375,14 +381,27 @@ fn deliver(
     scans: &[Measurements],
     reports: Vec<Report>,
 ) -> Result<(), Vec<String>> {
+    let models = arguments.models().len();
+    let scans: Vec<&Measurements> = scans
+        .iter()
+        .flat_map(|scan| std::iter::repeat_n(scan, models))
+        .collect();
     let mut failed = Vec::new();
+    if let Some(folder) = &arguments.plot {
+        let reports: Vec<(&Measurements, &Report)> = scans.iter().copied().zip(&reports).collect();
+        failed.extend(
+            write_folder(&reports, folder)
+                .err()
+                .map(|error| error.to_string()),
+        );
+    }
     if let Some(path) = &arguments.curves {
         let models = arguments.models().len();
         let scans = scans
             .iter()
             .flat_map(|scan| std::iter::repeat_n(scan, models));
         let fits = scans.zip(&reports);
-        let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
+        let fits = fits.filter_map(|(&scan, report)| Some((scan, report.fit.as_ref()?)));
         let written = write_file(path, |writer| write_curves(fits, writer));
         failed.extend(written.err().map(|error| error.to_string()));
     }

@@ -2,11 +2,16 @@
 //! curves as CSV.
 
 mod csv;
+mod folder;
+mod html;
 mod text;
 
 pub use csv::{
     CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, write_curves, write_models, write_parameters,
 };
+
+pub use folder::{FolderError, figures_of, write_folder};
+pub use html::html;
 
 use serde::{Deserialize, Serialize};
 

@@ -1,0 +1,133 @@
+//! Figs. 3 to 10 of the paper, drawn from its Table 1.
+
+use brdf_core::published::{PUBLISHED, PublishedSample};
+use brdf_core::{AnyBrdf, Family, ModelParameters};
+
+use super::curves::Curves;
+use super::title::Title;
+use super::{Figure, PlotError, polar, theory};
+
+/// The incidence angles where the paper has several, in degrees.
+const SEVERAL: &[f64] = &[0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
+
+/// A figure of the paper.
+struct PaperFigure {
+    number: u32,
+    sample: &'static str,
+    wavelength_um: f64,
+    psi_deg: &'static [f64],
+    /// What the paper leaves open.
+    open: &'static str,
+}
+
+const NOTE: &str = "theory only: the readings were never published";
+
+const POLAR: &str = "BRDF in 1/sr as radius at the view angle from the surface normal, in the \
+                     plane of incidence, the source's side to the right";
+
+const LOGARITHMIC: &str = "BRDF over the view angle in the plane of incidence, on a logarithmic \
+                           axis, because in polar form the largest incidence would hide the others";
+
+const SET_NOT_LEGIBLE: &str = " The paper's own set of incidence angles is not legible.";
+
+const FIGURES: [PaperFigure; 8] = [
+    of(3, "001", 0.91, &[0.0], ""),
+    of(4, "001", 0.91, SEVERAL, SET_NOT_LEGIBLE),
+    of(5, "001", 0.44, &[70.0], ""),
+    of(6, "001", 0.44, SEVERAL, SET_NOT_LEGIBLE),
+    of(
+        7,
+        "002",
+        0.62,
+        &[0.0],
+        " The paper's text does not say at which incidence angle this figure is.",
+    ),
+    of(8, "002", 0.62, SEVERAL, SET_NOT_LEGIBLE),
+    of(9, "003", 1.04, &[10.0], ""),
+    of(10, "003", 1.04, &[60.0], ""),
+];
+
+const fn of(
+    number: u32,
+    sample: &'static str,
+    wavelength_um: f64,
+    psi_deg: &'static [f64],
+    open: &'static str,
+) -> PaperFigure {
+    PaperFigure {
+        number,
+        sample,
+        wavelength_um,
+        psi_deg,
+        open,
+    }
+}
+
+/// Figs. 3 to 10 of Li, Yan and Wu (2002) from the parameters of its Table 1, `figure-3` to
+/// `figure-10`: f_r as radius at the view angle, as in the paper, or for several incidences over the
+/// view angle on a logarithmic axis. Theory only: the measured points of the paper were
+/// never published.
+pub fn paper_figures() -> Result<Vec<Figure>, PlotError> {
+    let mut figures = Vec::new();
+    for figure in &FIGURES {
+        let row = PUBLISHED
+            .iter()
+            .find(|row| row.sample == figure.sample && row.wavelength_um == figure.wavelength_um);
+        if let Some(row) = row {
+            figures.push(drawn(figure, row)?);
+        }
+    }
+    Ok(figures)
+}
+
+fn drawn(figure: &PaperFigure, row: &PublishedSample) -> Result<Figure, PlotError> {
+    let at = ModelParameters::three(row.parameters, row.n);
+    let brdf = AnyBrdf::new(Family::Paper, &at)?;
+    let curves = Curves::of_theory(&brdf, figure.psi_deg);
+    let title = title(figure, row);
+    let (form, svg) = if figure.psi_deg.len() == 1 {
+        (POLAR, polar::svg(&title, &curves, Some(NOTE))?)
+    } else {
+        (LOGARITHMIC, theory::of_theory(&title, &curves, NOTE)?)
+    };
+    let caption = format!(
+        "Fig. {} of Li, Yan and Wu (2002) from the parameters of its Table 1: {form}. {}, {}. \
+         Dashed: mirror directions. Theory only: the measured points were never published.{}",
+        figure.number, title.sample, title.details, figure.open
+    );
+    Ok(Figure {
+        name: format!("figure-{}", figure.number),
+        caption,
+        svg,
+    })
+}
+
+fn title(figure: &PaperFigure, row: &PublishedSample) -> Title {
+    let parameters = row.parameters;
+    Title {
+        sample: format!(
+            "Fig. {}: sample {}, {} on {}",
+            figure.number, row.sample, row.coating, row.base
+        ),
+        details: format!(
+            "{} um, k2 = {}, kD = {}, k1 = {}, n = {}",
+            row.wavelength_um, parameters.k2, parameters.kd, parameters.k1, row.n
+        ),
+        theory: "the paper's model".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_figures_are_drawn_and_say_that_they_are_theory() {
+        let figures = paper_figures().unwrap();
+        let names: Vec<String> = (3..=10).map(|number| format!("figure-{number}")).collect();
+        assert!(figures.iter().map(|figure| &figure.name).eq(&names));
+        for figure in figures {
+            assert!(figure.caption.contains("never published"));
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! The form of the paper's figures: f_r as radius at the view angle from the normal.
+
+use plotters::style::Color;
+
+use super::axis::Axis;
+use super::canvas::{Canvas, Place, Stands, drawn};
+use super::clip::within;
+use super::curves::{Curve, Curves};
+use super::frame::draw_title;
+use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, colour, mark};
+use super::theory::{BRDF, legend};
+use super::title::Title;
+use super::{Figure, PlotError};
+use crate::words::counted;
+
+/// Where the surface element lies, and how far from it the axis ends.
+const CENTRE: Place = (400.0, 478.0);
+const RADIUS: f64 = 340.0;
+
+/// The figure of readings and theory.
+pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {
+    let negative = curves.readings().filter(|r| r.brdf < 0.0).count();
+    let note = (negative > 0).then(|| format!("{} < 0 not shown", counted(negative, "reading")));
+    let sentence = note
+        .as_deref()
+        .map_or_else(String::new, |n| format!(" {n}."));
+    Ok(Figure {
+        name: "polar".to_owned(),
+        caption: format!(
+            "BRDF in 1/sr as radius at the view angle from the surface normal, in the plane of \
+             incidence, the source's side to the right. Marks: readings. Lines: {}. Dashed: mirror \
+             directions.{}{sentence}",
+            title.theory, curves.left_out
+        ),
+        svg: svg(title, curves, note.as_deref())?,
+    })
+}
+
+/// The drawing.
+pub(super) fn svg(title: &Title, curves: &Curves, note: Option<&str>) -> Result<String, PlotError> {
+    let radii = Axis::linear(curves.values().filter(|value| *value > 0.0));
+    drawn(|canvas| {
+        draw_title(canvas, title)?;
+        draw_grid(canvas, &radii)?;
+        draw_curves(canvas, &radii, curves)?;
+        legend(curves, note).draw(canvas)
+    })
+}
+
+/// Where a fraction of the outer radius lies at a view angle in degrees.
+fn place(theta_deg: f64, radius: f64) -> Place {
+    let (sin, cos) = theta_deg.to_radians().sin_cos();
+    (
+        CENTRE.0 + RADIUS * radius * sin,
+        CENTRE.1 - RADIUS * radius * cos,
+    )
+}
+
+fn draw_grid(canvas: &mut Canvas, radii: &Axis) -> Result<(), PlotError> {
+    for step in -6..=6 {
+        let theta_deg = 15.0 * f64::from(step);
+        let line = [place(theta_deg, 0.0), place(theta_deg, 1.0)];
+        if step % 2 == 0 {
+            canvas.line(&line, &GRID, 1.0)?;
+            let label = format!("{theta_deg:.0}");
+            let at = place(theta_deg, 1.0 + 17.0 / RADIUS);
+            canvas.text(&label, at, TEXT, Stands::Centred)?;
+        } else {
+            canvas.line(&line, &FINE_GRID, 1.0)?;
+        }
+    }
+    for tick in radii.ticks.iter().filter(|tick| tick.value > 0.0) {
+        let radius = radii.height(tick.value);
+        let circle: Vec<Place> = (-90..=90)
+            .map(|deg| place(f64::from(deg), radius))
+            .collect();
+        canvas.line(&circle, &GRID, 1.0)?;
+        for side in [-90.0, 90.0] {
+            let (x, _) = place(side, radius);
+            canvas.text(&tick.label, (x, CENTRE.1 + 14.0), TEXT, Stands::Centred)?;
+        }
+    }
+    canvas.text("0", (CENTRE.0, CENTRE.1 + 14.0), TEXT, Stands::Centred)?;
+    canvas.line(&[place(-90.0, 1.0), place(90.0, 1.0)], &INK, 1.0)?;
+    let below = CENTRE.1 + 40.0;
+    for (text, x) in [("forward side", -0.5), (BRDF, 0.0), ("source side", 0.5)] {
+        canvas.text(
+            text,
+            (CENTRE.0 + x * RADIUS, below),
+            TEXT + 1.0,
+            Stands::Centred,
+        )?;
+    }
+    canvas.text(
+        "view angle theta / deg (source side positive)",
+        (CENTRE.0, below + 24.0),
+        TEXT + 1.0,
+        Stands::Centred,
+    )
+}
+
+fn draw_curves(canvas: &mut Canvas, radii: &Axis, curves: &Curves) -> Result<(), PlotError> {
+    for (i, curve) in curves.curves.iter().enumerate() {
+        let mirror = -curve.psi_deg;
+        let dashes = colour(i).mix(0.6);
+        canvas.dashes(place(mirror, 0.0), place(mirror, 1.0), &dashes, 1.0)?;
+        for band in curve.bands() {
+            let edge = |i: usize| {
+                let place = move |&(theta, ends): &(f64, [f64; 2])| {
+                    place(theta, radii.height(ends[i]).clamp(0.0, 1.0))
+                };
+                band.iter().map(place)
+            };
+            let outline: Vec<Place> = edge(0).chain(edge(1).rev()).collect();
+            canvas.area(&outline, &colour(i).mix(BAND))?;
+        }
+    }
+    for (i, curve) in curves.curves.iter().enumerate() {
+        draw_readings(canvas, radii, curve, i)?;
+    }
+    for (i, curve) in curves.curves.iter().enumerate() {
+        let line = curve.theory.iter().map(|t| (t.theta_deg, t.brdf));
+        draw_line(canvas, radii, line, i, 1.8)?;
+    }
+    Ok(())
+}
+
+fn draw_readings(
+    canvas: &mut Canvas,
+    radii: &Axis,
+    curve: &Curve,
+    i: usize,
+) -> Result<(), PlotError> {
+    for reading in &curve.readings {
+        let (theta, brdf) = (reading.theta_deg, reading.brdf);
+        if let Some(sigma) = reading.sigma {
+            let bar = [(theta, brdf - sigma), (theta, brdf + sigma)];
+            draw_line(canvas, radii, bar.into_iter(), i, 1.0)?;
+        }
+        if radii.contains(brdf) {
+            canvas.mark(place(theta, radii.height(brdf)), mark(i), colour(i))?;
+        }
+    }
+    Ok(())
+}
+
+/// A line through points of view angle and f_r, cut at the axis.
+fn draw_line(
+    canvas: &mut Canvas,
+    radii: &Axis,
+    points: impl Iterator<Item = (f64, f64)>,
+    i: usize,
+    width: f64,
+) -> Result<(), PlotError> {
+    let line: Vec<(f64, f64)> = points.map(|(t, brdf)| (t, radii.height(brdf))).collect();
+    for piece in within(&line) {
+        let places: Vec<Place> = piece.into_iter().map(|(t, r)| place(t, r)).collect();
+        canvas.line(&places, &colour(i), width)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,60 @@
+//! PNG of an SVG, with a typeface of its own.
+
+use std::sync::{Arc, LazyLock};
+
+use resvg::tiny_skia::{Color, Pixmap, Transform};
+use resvg::usvg::fontdb::Database;
+use resvg::usvg::{Options, Tree};
+
+use super::PlotError;
+
+/// The largest side of an image, in pixels.
+pub(super) const LARGEST_SIDE: f32 = 20_000.0;
+
+/// The only typeface: what the machine has installed is of no influence.
+static TYPEFACES: LazyLock<Arc<Database>> = LazyLock::new(|| {
+    let mut typefaces = Database::new();
+    typefaces.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    let family = typefaces
+        .faces()
+        .find_map(|face| face.families.first().map(|(name, _)| name.clone()));
+    if let Some(family) = family {
+        typefaces.set_sans_serif_family(family);
+    }
+    Arc::new(typefaces)
+});
+
+/// The PNG on white, `scale` pixels a unit.
+pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
+    let options = Options {
+        fontdb: Arc::clone(&TYPEFACES),
+        ..Options::default()
+    };
+    let tree = Tree::from_str(svg, &options)?;
+    let size = tree.size();
+    let pixels = |side: f32| {
+        let pixels = (side * scale).round();
+        (1.0..=LARGEST_SIDE)
+            .contains(&pixels)
+            .then(|| whole(pixels))
+    };
+    let sides = pixels(size.width()).zip(pixels(size.height()));
+    let mut image = sides
+        .and_then(|(width, height)| Pixmap::new(width, height))
+        .ok_or(PlotError::Scale(scale))?;
+    image.fill(Color::WHITE);
+    let transform = Transform::from_scale(scale, scale);
+    resvg::render(&tree, transform, &mut image.as_mut());
+    image
+        .encode_png()
+        .map_err(|error| PlotError::Png(error.to_string()))
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked to be from 1 to the largest side"
+)]
+fn whole(pixels: f32) -> u32 {
+    pixels as u32
+}

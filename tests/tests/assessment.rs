@@ -1,0 +1,194 @@
+//! The options of the program that say what a fit is worth.
+
+use std::fs;
+use std::process::Output;
+
+use brdf_fit::report::Document;
+use brdf_tests::{in_workspace, run_fit};
+
+fn measured(name: &str) -> String {
+    let path = in_workspace("data/measured").join(name);
+    path.to_str().unwrap().to_owned()
+}
+
+fn run(extra: &[&str]) -> Output {
+    let path = measured("z307_on_aluminium.csv");
+    let mut arguments = vec![path.as_str()];
+    arguments.extend(extra);
+    run_fit(arguments)
+}
+
+fn text(extra: &[&str]) -> String {
+    let output = run(extra);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[test]
+fn the_tables_hold_intervals_prediction_ladder_and_physics() {
+    let text = text(&["--n", "1.5"]);
+    for part in [
+        "95 % over incidences",
+        "correlations k2-kD",
+        "prediction of each incidence from the others: E = 19.3",
+        "  three+n        0.0925581",
+        "verdict: power+n suffices",
+        "reflectance rho(psi):",
+        "facet reflectance at normal incidence: k2 implies 0.0096, n = 1.5 means 0.0400",
+    ] {
+        assert!(text.contains(part), "no \"{part}\" in\n{text}");
+    }
+    assert!(!text.contains("ggx"));
+}
+
+#[test]
+fn compare_adds_the_neighbours_and_a_line_for_each_model() {
+    assert!(text(&["--n", "1.5", "--compare"]).contains("  ggx+n"));
+    let csv = text(&["--n", "1.5", "--compare", "--params-only"]);
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    assert_eq!(header[2..4], ["n", "model"]);
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let models: Vec<&str> = rows.iter().take(8).map(|row| row[3]).collect();
+    let expected = [
+        "three",
+        "three+n",
+        "smith+n",
+        "power+n",
+        "ggx",
+        "ggx+n",
+        "beckmann",
+        "beckmann+n",
+    ];
+    assert_eq!(models, expected);
+    assert_eq!(rows.len(), 16);
+    let n = |row: &[&str]| row[2].parse::<f64>().unwrap();
+    assert_eq!(n(&rows[0]), 1.5);
+    assert!((n(&rows[1]) - 1.1094).abs() < 1e-3);
+}
+
+#[test]
+fn a_model_can_be_chosen_by_name_or_by_the_data() {
+    let free = text(&["--model", "three+n", "--params-only"]);
+    assert!(free.lines().nth(1).unwrap().contains(",three+n,"));
+    let auto = text(&["--model", "auto", "--n", "1.5", "--params-only"]);
+    assert!(auto.lines().nth(1).unwrap().contains(",power+n,"));
+    assert!(auto.lines().nth(2).unwrap().contains(",three+n,"));
+    let lambert = text(&["--model", "lambert", "--n", "1.5"]);
+    assert!(lambert.contains("model lambert: Lambertian only"));
+    let output = run(&["--model", "phong"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("\"phong\": expected one of lambert"));
+}
+
+#[test]
+fn robust_fits_list_what_they_reject() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("scan.csv");
+    let mut lines = vec!["psi_deg,theta_deg,brdf_per_sr".to_owned()];
+    for psi in [0, 20, 40, 60] {
+        for theta in (-70..=70).step_by(5) {
+            let ripple = 1.0 + 0.01 * f64::from(theta * (psi + 3)).sin();
+            let bad = if (psi, theta) == (20, 35) { 3.0 } else { 1.0 };
+            lines.push(format!("{psi},{theta},{}", 0.1 * ripple * bad));
+        }
+    }
+    fs::write(&scan, lines.join("\n")).unwrap();
+    let arguments = |loss: &str| {
+        let path = scan.to_str().unwrap();
+        let output = run_fit([path, "--n", "1.5", "--model", "lambert", "--robust", loss]);
+        String::from_utf8(output.stdout).unwrap()
+    };
+    for loss in ["huber", "tukey"] {
+        let text = arguments(loss);
+        assert!(text.contains("1 reading rejected"), "{text}");
+        assert!(
+            text.contains("psi 20 deg, theta 35 deg, phi 0 deg: 0."),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn energy_is_conserved_where_asked_for() {
+    let sample = in_workspace("data/synthetic");
+    let file = fs::read_dir(sample)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .find(|path| {
+            path.to_string_lossy().contains("002") && path.to_string_lossy().contains("1.04")
+        })
+        .expect("the scan of sample 002");
+    let path = file.to_str().unwrap();
+    let run = |extra: &str| {
+        let output = run_fit([path, extra]);
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let text = run("--energy-conserving=80");
+    assert!(text.contains("energy: fitted under rho(psi) <= 1 up to 80 deg, which raises E from"));
+    assert!(run("--energy-conserving").contains("up to 85 deg"));
+}
+
+#[test]
+fn masks_and_solid_angles_weigh_the_readings() {
+    let text = text(&[
+        "--n",
+        "1.5",
+        "--mask-source",
+        "12",
+        "--mask-mirror",
+        "2",
+        "--weights",
+        "solid-angle",
+    ]);
+    assert!(text.contains(
+        "readings weighted by solid angle, 0 within 12 deg of the source, 0 within 2 deg of the mirror direction"
+    ));
+    assert!(text.contains("with a weight of zero, without any say"));
+}
+
+#[test]
+fn the_json_of_an_assessed_fit_reads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fit.json");
+    text(&["--n", "1.5", "--compare", "--json", json.to_str().unwrap()]);
+    let written = fs::read_to_string(&json).unwrap();
+    let document: Document = serde_json::from_str(&written).unwrap();
+    let assessment = document.reports[0].assessment.as_ref().unwrap();
+    assert_eq!(assessment.models.len(), 10);
+    assert_eq!(
+        serde_json::to_string_pretty(&document).unwrap(),
+        written.trim_end()
+    );
+}
+
+#[test]
+fn a_folder_of_pictures_has_a_page_that_needs_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let plots = folder.path().join("new/plots");
+    text(&["--n", "1.5", "--plot", plots.to_str().unwrap()]);
+    let page = fs::read_to_string(plots.join("report.html")).unwrap();
+    assert_eq!(page.matches("<figure>").count(), 12);
+    assert_eq!(page.matches("<svg").count(), 12);
+    assert!(!page.contains("src=") && !page.contains("href=\"http"));
+    let files: Vec<String> = fs::read_dir(&plots)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    for end in [".svg", ".png"] {
+        assert_eq!(
+            files.iter().filter(|name| name.ends_with(end)).count(),
+            12,
+            "{files:?}"
+        );
+    }
+}

@@ -75,6 +75,7 @@ fn compare_adds_the_neighbours_and_a_line_for_each_model() {
 fn a_model_can_be_chosen_by_name_or_by_the_data() {
     let free = text(&["--model", "three+n", "--params-only"]);
     assert!(free.lines().nth(1).unwrap().contains(",three+n,"));
+    assert!(text_of_three_n().contains("  three      not fitted: no refractive index"));
     let auto = text(&["--model", "auto", "--n", "1.5", "--params-only"]);
     assert!(auto.lines().nth(1).unwrap().contains(",power+n,"));
     assert!(auto.lines().nth(2).unwrap().contains(",three+n,"));
@@ -83,6 +84,11 @@ fn a_model_can_be_chosen_by_name_or_by_the_data() {
     let output = run(&["--model", "phong"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("\"phong\": expected one of lambert"));
+}
+
+/// Without a refractive index only the models that do not need one are fitted.
+fn text_of_three_n() -> String {
+    text(&["--model", "three+n"])
 }
 
 #[test]

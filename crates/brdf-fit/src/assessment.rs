@@ -42,6 +42,8 @@ pub struct Assessment {
     pub physics: Physics,
     /// The ladder of models, and the neighbours where they were asked for.
     pub models: Vec<Rung>,
+    /// The models that cannot be fitted to this scan.
+    pub left_out: Vec<LeftOut>,
     /// Which model of the ladder suffices; `None` where nothing can be predicted.
     pub verdict: Option<Verdict>,
 }
@@ -88,6 +90,15 @@ pub struct Rung {
     pub estimates: Vec<Estimate>,
     /// The incidence from which the reflectance is above 1, in degrees.
     pub violation_deg: Option<f64>,
+}
+
+/// A model that cannot be fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeftOut {
+    /// The model.
+    pub model: Model,
+    /// Why.
+    pub reason: String,
 }
 
 /// Which model of the ladder suffices.
@@ -159,7 +170,7 @@ fn violation_deg(brdf: &AnyBrdf) -> Option<f64> {
 /// Assesses a fit of the measurements, and fits the ladder of models beside it; with `compare`
 /// also the neighbours.
 ///
-/// Models that cannot be fitted, for want of readings or of a refractive index, are left out.
+/// Models that cannot be fitted, for want of readings or of a refractive index, are named.
 pub fn assess(
     measurements: &Measurements,
     fit: &Fit,
@@ -177,10 +188,16 @@ pub fn assess(
     } else {
         Model::LADDER.as_slice()
     };
-    let mut rungs: Vec<Rung> = models
-        .iter()
-        .filter_map(|&model| rung(scan, model, &fit.options).ok())
-        .collect();
+    let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
+    for &model in models {
+        match rung(scan, model, &fit.options) {
+            Ok(rung) => rungs.push(rung),
+            Err(error) => left_out.push(LeftOut {
+                model,
+                reason: error.to_string(),
+            }),
+        }
+    }
     let best = rungs
         .iter()
         .map(|rung| rung.aicc_above_best)
@@ -201,6 +218,7 @@ pub fn assess(
         })?,
         verdict: verdict(&rungs),
         models: rungs,
+        left_out,
     })
 }
 

@@ -37,7 +37,7 @@ pub struct FitOptions {
     #[serde(default)]
     pub model: Model,
     /// Refractive index; `None` takes what the measurements state. Where the model has n free, the
-    /// fit starts there, or from [`USUAL_N`](crate::model::USUAL_N) where nobody states one.
+    /// fit starts there, or from [`USUAL_N`] where nobody states one.
     pub refractive_index: Option<RefractiveIndex>,
     /// Weights of the readings in E.
     pub weights: Weights,
@@ -433,7 +433,9 @@ fn refractive_index(
         .as_ref()
         .or(measurements.refractive_index.as_ref())
         .and_then(|index| index.at(wavelength_um));
-    let usual = options.model.frees(Parameter::N).then_some(USUAL_N);
+    // It is where n starts, or nothing depends on it.
+    let needed = !options.model.frees(Parameter::N) && options.model.frees(Parameter::K2);
+    let usual = (!needed).then_some(USUAL_N);
     stated
         .or(usual)
         .ok_or(FitError::NoRefractiveIndex(wavelength_um))

@@ -1,5 +1,6 @@
 //! `paper-figures DIR`: Figs. 3 to 10 of the paper from its Table 1, as SVG and PNG.
 
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -9,7 +10,9 @@ use clap::Parser;
 /// Draws Figs. 3 to 10 of Li, Yan and Wu (2002) from the parameters of its Table 1
 ///
 /// Each figure is f_r over the view angle, in polar form for one incidence and on a logarithmic
-/// axis for several. Theory only: the measured points of the paper were never published. Exit status: 0 when all files are written, 2 otherwise.
+/// axis for several. Theory only: the measured points of the paper were never published.
+///
+/// Exit status: 0 when all files are written, 2 otherwise.
 #[derive(Parser)]
 #[command(name = "paper-figures", version)]
 struct Arguments {
@@ -22,13 +25,15 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     match written(&arguments) {
         Ok(files) => {
+            // A reader that has seen enough (`| head`) is no error.
+            let mut output = io::stdout().lock();
             for file in files {
-                println!("{}", file.display());
+                let _ = writeln!(output, "{}", file.display());
             }
             ExitCode::SUCCESS
         }
         Err(error) => {
-            eprintln!("error: {error}");
+            let _ = writeln!(io::stderr(), "error: {error}");
             ExitCode::from(2)
         }
     }

@@ -34,7 +34,7 @@ pub fn write_folder(
     let mut taken = HashSet::new();
     let prefixes: Vec<String> = reports
         .iter()
-        .map(|(_, report)| unique(prefix(report), &mut taken))
+        .map(|(_, report)| unique(&prefix(report), &mut taken))
         .collect();
     let drawn: Vec<(Vec<Figure>, Vec<PathBuf>)> = reports
         .par_iter()
@@ -86,8 +86,8 @@ fn prefix(report: &Report) -> String {
 }
 
 /// The name, or with a number where it is taken.
-fn unique(name: String, taken: &mut HashSet<String>) -> String {
-    let mut candidate = name.clone();
+fn unique(name: &str, taken: &mut HashSet<String>) -> String {
+    let mut candidate = name.to_owned();
     let mut number = 2;
     while !taken.insert(candidate.clone()) {
         candidate = format!("{name}-{number}");

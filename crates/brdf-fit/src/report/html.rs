@@ -253,6 +253,10 @@ fn models(assessment: &Assessment) -> String {
         "energy",
     ];
     let mut text = table("Models (95 % intervals)", &heading, &rows);
+    for missing in &assessment.left_out {
+        let reason = escaped(&missing.reason);
+        let _ = writeln!(text, "<p>{} was not fitted: {reason}.</p>", missing.model);
+    }
     if let Some(verdict) = &assessment.verdict {
         let _ = writeln!(text, "<p>Verdict: {}.</p>", escaped(&verdict.to_string()));
     }

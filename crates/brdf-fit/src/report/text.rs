@@ -395,6 +395,10 @@ fn model_table(assessment: &Assessment) -> String {
             parameters.join(", ")
         );
     }
+    for missing in &assessment.left_out {
+        let (name, reason) = (missing.model.name(), &missing.reason);
+        let _ = writeln!(text, "  {name:<11}not fitted: {reason}");
+    }
     text += "  (predicted: E of each incidence predicted from the others; AICc: above the best, for independent normal errors)\n";
     if let Some(verdict) = &assessment.verdict {
         let _ = writeln!(text, "  verdict: {verdict}");

@@ -42,7 +42,7 @@ pub enum ParameterError {
     /// The refractive index is outside [`N_DOMAIN`].
     #[error("refractive index n = {0}: expected a number in [{min}, {max:e}]", min = N_DOMAIN.0, max = N_DOMAIN.1)]
     N(f64),
-    /// The exponent is outside [`P_DOMAIN`](crate::facet::P_DOMAIN).
+    /// The exponent is outside [`P_DOMAIN`].
     #[error("exponent p = {0}: expected a number in [{min}, {max}]", min = P_DOMAIN.0, max = P_DOMAIN.1)]
     P(f64),
 }

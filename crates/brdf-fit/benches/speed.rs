@@ -107,9 +107,21 @@ fn fits(c: &mut Criterion) {
         group.bench_function(name, |b| b.iter(|| fit(black_box(&scan), &options)));
     }
     let all = options(Some(lm), lm, true);
-    group.bench_function("two stages LM, global check, warnings", |b| {
-        b.iter(|| Report::of(black_box(&scan), &all, Depth::Fit));
-    });
+    for (name, depth) in [
+        (
+            "two stages LM, global check, intervals, warnings",
+            Depth::Fit,
+        ),
+        (
+            "the same, prediction, bootstrap, ladder, physics",
+            Depth::Assessed,
+        ),
+        ("the same, neighbours", Depth::Compared),
+    ] {
+        group.bench_function(name, |b| {
+            b.iter(|| Report::of(black_box(&scan), &all, depth))
+        });
+    }
     let start = fit(&scan, &options(None, lm, false))
         .expect("a fit")
         .initial

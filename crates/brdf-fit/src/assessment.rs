@@ -22,6 +22,9 @@ pub const MARGIN: f64 = 0.1;
 /// An assessment takes about so many readings at the most: it fits some hundred times.
 pub const ASSESSED_READINGS: usize = 4096;
 
+/// Below this E nothing but rounding is left.
+const ROUNDING_PERCENT: f64 = 1e-18;
+
 /// Incidence angles of the table of reflectances, in degrees.
 const PSI_DEG: [f64; 8] = [0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0];
 
@@ -170,6 +173,7 @@ fn violation_deg(brdf: &AnyBrdf) -> Option<f64> {
 /// Assesses a fit of the measurements, and fits the ladder of models beside it; with `compare`
 /// also the neighbours.
 ///
+/// Prediction, bootstrap and models are those of fits that are free of the condition rho(psi) <= 1.
 /// Models that cannot be fitted, for want of readings or of a refractive index, are named.
 pub fn assess(
     measurements: &Measurements,
@@ -188,9 +192,13 @@ pub fn assess(
     } else {
         Model::LADDER.as_slice()
     };
+    let options = FitOptions {
+        energy_limit: None,
+        ..fit.options.clone()
+    };
     let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
     for &model in models {
-        match rung(scan, model, &fit.options) {
+        match rung(scan, model, &options) {
             Ok(rung) => rungs.push(rung),
             Err(error) => left_out.push(LeftOut {
                 model,
@@ -206,14 +214,14 @@ pub fn assess(
         rung.aicc_above_best -= best;
     }
 
-    let fitted = fit_scan(scan, &fit.options)?;
+    let fitted = fit_scan(scan, &options)?;
     let search = fitted.search();
-    let (model, at) = (fit.model(), fit.at());
+    let (model, at) = (fit.model(), fitted.fit.at());
     Ok(Assessment {
         readings: scan.readings().len(),
         bootstrap: bootstrap(&fitted.criterion, &search, model, &at),
         prediction: leave_one_out(&fitted.criterion, &search, model, &at),
-        physics: Physics::of(model, &at).ok_or_else(|| {
+        physics: Physics::of(model, &fit.at()).ok_or_else(|| {
             FitError::Solver("the fit ended outside of the model's domain".to_owned())
         })?,
         verdict: verdict(&rungs),
@@ -239,6 +247,7 @@ fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung,
     let options = FitOptions {
         model,
         start: None,
+        energy_limit: None,
         ..options.clone()
     };
     let fitted = fit_scan(scan, &options)?;
@@ -285,7 +294,7 @@ fn verdict(rungs: &[Rung]) -> Option<Verdict> {
         .collect();
     let best = predicted.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
     // E is a square: its root may be larger by the margin.
-    let limit = best.1 * (1.0 + MARGIN).powi(2);
+    let limit = (best.1 * (1.0 + MARGIN).powi(2)).max(ROUNDING_PERCENT);
     let smallest = predicted.iter().find(|(_, e)| *e <= limit)?;
     Some(Verdict {
         model: (best.1 <= NOT_DESCRIBED_PERCENT).then_some(smallest.0),

@@ -12,7 +12,7 @@ use crate::criterion::Criterion;
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::profile::best_weights;
 use crate::solver::{Method, minimise};
-use crate::stages::Fitted;
+use crate::stages::{Fit, Fitted};
 
 /// E below which it is nothing but rounding, as a fraction.
 const ROUNDING: f64 = 1e-20;
@@ -88,6 +88,9 @@ pub enum Knowledge {
         /// Profile-likelihood interval of 95 %.
         interval_95: Interval,
     },
+    /// The condition rho(psi) <= 1 holds the fit away from the minimum of E, so that its growth
+    /// there says nothing of errors.
+    HeldByEnergy,
     /// It stands on a bound, and is left out of the covariance.
     OnBound {
         /// Profile-likelihood interval of 95 %, one end of which is the bound.
@@ -103,9 +106,13 @@ pub enum Knowledge {
 }
 
 impl Estimate {
-    /// The interval of 95 %.
+    /// The interval of 95 %; open where there is none.
     pub fn interval_95(&self) -> Interval {
         match self.knowledge {
+            Knowledge::HeldByEnergy => Interval {
+                from: None,
+                to: None,
+            },
             Knowledge::Determined { interval_95, .. }
             | Knowledge::OnBound { interval_95 }
             | Knowledge::NotDetermined { interval_95, .. } => interval_95,
@@ -141,22 +148,24 @@ impl fmt::Display for Estimate {
                     _ => f.pad(&value.to_string()),
                 }
             }
+            Knowledge::HeldByEnergy => f.pad(&format!("{value:.4} (held by rho <= 1)")),
             Knowledge::NotDetermined { .. } => f.pad("not determined"),
         }
     }
 }
 
-/// A number with two digits of its error.
+/// A number with two digits of its error, and with 8 decimals at the most.
 pub fn rounded(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite() && value.is_finite()) {
         return format!("{value}");
     }
-    let smallest = error.log10().floor();
     #[expect(clippy::cast_possible_truncation, reason = "an exponent of ten")]
-    let decimals = (1.0 - smallest) as i64;
-    match usize::try_from(decimals.max(0)) {
-        Ok(decimals) if decimals <= 12 => format!("{value:.decimals$}"),
-        _ => format!("{value:.3e}"),
+    let decimals = (1.0 - error.log10().floor()) as i64;
+    let decimals = usize::try_from(decimals).unwrap_or(0);
+    if decimals <= 8 || value.abs() >= 1e-4 {
+        format!("{value:.*}", decimals.min(8))
+    } else {
+        format!("{value:.3e}")
     }
 }
 
@@ -179,8 +188,27 @@ impl Uncertainty {
     /// The uncertainty of a fit.
     pub(crate) fn of_fit(fitted: &Fitted) -> Self {
         let fit = &fitted.fit;
+        if fit.energy.is_some_and(|energy| energy.binding) {
+            return Self::held_by_energy(fit);
+        }
         let given_sigma = fit.options.weights.by_sigma;
         Self::of(&fitted.criterion, fit.model(), &fit.at(), given_sigma)
+    }
+
+    fn held_by_energy(fit: &Fit) -> Self {
+        let at = fit.at();
+        let estimate = |&parameter: &Parameter| Estimate {
+            parameter,
+            value: parameter.of(&at),
+            knowledge: Knowledge::HeldByEnergy,
+        };
+        Self {
+            noise: Noise::Residuals,
+            degrees_of_freedom: fit.degrees_of_freedom(),
+            estimates: fit.model().free().iter().map(estimate).collect(),
+            covered: Vec::new(),
+            covariance: Vec::new(),
+        }
     }
 
     /// The uncertainty of the minimum `at` of a model's criterion.
@@ -642,6 +670,120 @@ impl Scale {
         match self {
             Self::Linear => coordinate,
             Self::Logarithmic => coordinate.exp(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::{Depth, Report};
+    use crate::synthetic::scan;
+    use crate::{FitOptions, Measurements, RefractiveIndex};
+    use brdf_core::Parameters;
+
+    fn uncertainty(k2: f64, kd: f64, k1: f64, model: Model) -> (Uncertainty, Measurements) {
+        let truth = Parameters::new(k2, kd, k1).unwrap();
+        let mut readings = scan(truth, 1.5).readings().to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.03 * (2.4 * i as f64).sin();
+        }
+        let scan = Measurements::new("test", readings).unwrap();
+        let (report, _) = Report::of(&scan, &options(model), Depth::Fit);
+        (report.uncertainty.unwrap(), scan)
+    }
+
+    fn options(model: Model) -> FitOptions {
+        FitOptions {
+            model,
+            refractive_index: Some(RefractiveIndex::Same(1.5)),
+            ..FitOptions::default()
+        }
+    }
+
+    #[test]
+    fn numbers_have_two_digits_of_their_error() {
+        assert_eq!(rounded(0.022_859_766, 0.000_5), "0.02286");
+        assert_eq!(rounded(1870.3, 20.0), "1870");
+        assert_eq!(rounded(0.156, 1e-17), "0.15600000");
+        assert_eq!(rounded(1.5e-9, 1e-11), "1.500e-9");
+    }
+
+    /// The interval of k1 by its definition: E of the exact weights along a dense line of widths.
+    #[test]
+    fn the_interval_of_the_width_is_where_the_profile_has_risen() {
+        let (uncertainty, scan) = uncertainty(0.3, 0.1, 0.2, Model::Three);
+        let criterion = Criterion::new(
+            &scan,
+            Model::Three.family(),
+            1.5,
+            &crate::weights::Weights::default(),
+        )
+        .unwrap();
+        let estimate = uncertainty.estimate(Parameter::K1).unwrap();
+        let at = |k1: f64| ModelParameters {
+            k2: 0.0,
+            kd: 0.0,
+            k1,
+            n: 1.5,
+            p: 1.0,
+        };
+        let error = |k1: f64| best_weights(&criterion, Model::Three, at(k1)).error;
+        let lowest = error(estimate.value);
+        let t = quantiles(Some(uncertainty.degrees_of_freedom))[1];
+        let limit = lowest * (1.0 + t * t / uncertainty.degrees_of_freedom as f64);
+        let Interval { from, to } = estimate.interval_95();
+        for end in [from.unwrap(), to.unwrap()] {
+            assert!(
+                (error(end) / limit - 1.0).abs() < 1e-3,
+                "{}",
+                error(end) / limit
+            );
+        }
+    }
+
+    #[test]
+    fn every_interval_of_every_model_holds_its_value_and_grows_with_the_level() {
+        for model in Model::ALL {
+            let (uncertainty, _) = uncertainty(0.3, 0.1, 0.2, model);
+            for estimate in &uncertainty.estimates {
+                if let Knowledge::Determined {
+                    interval_68,
+                    interval_95,
+                    ..
+                } = estimate.knowledge
+                {
+                    assert!(interval_68.contains(estimate.value), "{model} {estimate:?}");
+                    let inner = [interval_68.from, interval_68.to].into_iter().flatten();
+                    for end in inner {
+                        assert!(interval_95.contains(end), "{model} {estimate:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_weight_on_its_bound_has_an_upper_end_and_no_covariance() {
+        let (uncertainty, _) = uncertainty(0.3, 0.0, 0.2, Model::Three);
+        let estimate = uncertainty.estimate(Parameter::Kd).unwrap();
+        if let Knowledge::OnBound { interval_95 } = estimate.knowledge {
+            assert_eq!(interval_95.from, Some(0.0));
+            assert!(interval_95.to.unwrap() > 0.0);
+            assert!(!uncertainty.covered.contains(&Parameter::Kd));
+        } else {
+            // The ripple may leave a little of kD: then zero is within its interval.
+            assert!(estimate.interval_95().contains(0.0), "{estimate:?}");
+        }
+    }
+
+    #[test]
+    fn the_correlation_of_a_parameter_with_itself_is_one() {
+        let (uncertainty, _) = uncertainty(0.3, 0.1, 0.2, Model::PowerN);
+        let correlations = uncertainty.correlations();
+        for (i, row) in correlations.iter().enumerate() {
+            assert!((row[i] - 1.0).abs() < 1e-12);
+            assert!(row.iter().all(|c| c.abs() <= 1.0 + 1e-9));
         }
     }
 }

@@ -177,6 +177,7 @@ fn parameters(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> Str
             });
         let (value, reason) = match &estimate.knowledge {
             Knowledge::NotDetermined { reason, .. } => (String::new(), reason.clone()),
+            Knowledge::HeldByEnergy => (estimate.to_string(), String::new()),
             Knowledge::OnBound { .. } => (estimate.to_string(), "on its bound".to_owned()),
             Knowledge::Determined { .. } => (estimate.to_string(), String::new()),
         };

@@ -310,12 +310,21 @@ fn parameter_table(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -
                     ""
                 )
             }
+            Knowledge::HeldByEnergy => {
+                writeln!(
+                    text,
+                    "  {name:<9}{:>13}  held by rho <= 1",
+                    digits(estimate.value)
+                )
+            }
             Knowledge::NotDetermined { reason, .. } => {
                 writeln!(text, "  {name:<9}not determined: {reason}")
             }
         };
     }
-    text += &noise_line(uncertainty);
+    if !uncertainty.covered.is_empty() {
+        text += &noise_line(uncertainty);
+    }
     text
 }
 
@@ -355,6 +364,9 @@ fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
             "\n  assessed with {} of the {} readings, evenly over each incidence",
             assessment.readings, fit.readings
         );
+    }
+    if fit.energy.is_some_and(|energy| energy.binding) {
+        text += "\n  prediction and models are of fits without the condition rho <= 1\n";
     }
     let _ = match &assessment.prediction {
         Some(prediction) => writeln!(

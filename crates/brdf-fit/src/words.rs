@@ -1,9 +1,34 @@
-//! How counts and angles are written in messages, tables and files.
+//! How counts, numbers and angles are written in messages, tables and files.
 
 /// `1 reading`, `3 readings`.
 pub(crate) fn counted(count: usize, noun: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{plural}")
+}
+
+/// A number as it was written, or six significant digits where it has more.
+pub(crate) fn shortest(value: f64) -> String {
+    let plain = value.to_string();
+    let six = digits(value);
+    if plain.len() < six.len() { plain } else { six }
+}
+
+/// Six significant digits, in whichever notation is short.
+pub(crate) fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{value:.5e}");
+    let exponent = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok());
+    match exponent {
+        Some(exponent @ -4..=5) => {
+            let decimals = usize::try_from(5_i32 - exponent).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
+    }
 }
 
 /// Degrees of an angle in radians, rounded so that what was written in degrees comes back.
@@ -50,6 +75,16 @@ mod tests {
     fn counts_have_their_plural() {
         assert_eq!(counted(1, "reading"), "1 reading");
         assert_eq!(counted(0, "reading"), "0 readings");
+    }
+
+    #[test]
+    fn numbers_have_six_significant_digits() {
+        assert_eq!(digits(0.0), "0");
+        assert_eq!(digits(0.022_859_766), "0.0228598");
+        assert_eq!(digits(301.502_668), "301.503");
+        assert_eq!(digits(-2.839_658), "-2.83966");
+        assert_eq!(digits(123_456_789.0), "1.23457e8");
+        assert_eq!(digits(1.5e-9), "1.50000e-9");
     }
 
     #[test]

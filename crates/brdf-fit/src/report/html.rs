@@ -8,7 +8,7 @@ use crate::model::Parameter;
 use crate::plot::Figure;
 use crate::stages::Fit;
 use crate::uncertainty::{Estimate, Knowledge, Uncertainty, rounded};
-use crate::words::counted;
+use crate::words::{counted, shortest};
 
 const STYLE: &str = "
 body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
@@ -68,9 +68,9 @@ fn section(report: &Report, figures: &[Figure]) -> String {
         };
         let _ = write!(
             text,
-            ", model {model} ({}), n = {:.6}{fitted}, E = {:.4} %",
+            ", model {model} ({}), n = {}{fitted}, E = {:.4} %",
             escaped(model.description()),
-            fit.n,
+            shortest(fit.n),
             fit.e_percent
         );
     }
@@ -177,9 +177,10 @@ fn parameters(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> Str
             });
         let (value, reason) = match &estimate.knowledge {
             Knowledge::NotDetermined { reason, .. } => (String::new(), reason.clone()),
-            Knowledge::HeldByEnergy => (estimate.to_string(), String::new()),
             Knowledge::OnBound { .. } => (estimate.to_string(), "on its bound".to_owned()),
-            Knowledge::Determined { .. } => (estimate.to_string(), String::new()),
+            Knowledge::Determined { .. } | Knowledge::HeldByEnergy => {
+                (estimate.to_string(), String::new())
+            }
         };
         let remark = if value.is_empty() {
             format!("not determined: {reason}")

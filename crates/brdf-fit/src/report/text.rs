@@ -11,7 +11,7 @@ use crate::model::{K1_RANGE, Model, Parameter};
 use crate::robust::REJECTED;
 use crate::stages::{Fit, OwnAndAll, Stage};
 use crate::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
-use crate::words::{counted, in_degrees};
+use crate::words::{counted, digits, in_degrees, shortest};
 
 impl Report {
     /// The table that a person reads.
@@ -439,44 +439,4 @@ fn physics_lines(physics: &Physics, fit: &Fit) -> String {
         );
     }
     text
-}
-
-/// A number as it was written, or six significant digits where it has more.
-fn shortest(value: f64) -> String {
-    let plain = value.to_string();
-    let six = digits(value);
-    if plain.len() < six.len() { plain } else { six }
-}
-
-/// Six significant digits, in whichever notation is short.
-fn digits(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    let scientific = format!("{value:.5e}");
-    let exponent = scientific
-        .split_once('e')
-        .and_then(|(_, exponent)| exponent.parse().ok());
-    match exponent {
-        Some(exponent @ -4..=5) => {
-            let decimals = usize::try_from(5_i32 - exponent).unwrap_or(0);
-            format!("{value:.decimals$}")
-        }
-        _ => scientific,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_have_six_significant_digits() {
-        assert_eq!(digits(0.0), "0");
-        assert_eq!(digits(0.022_859_766), "0.0228598");
-        assert_eq!(digits(301.502_668), "301.503");
-        assert_eq!(digits(-2.839_658), "-2.83966");
-        assert_eq!(digits(123_456_789.0), "1.23457e8");
-        assert_eq!(digits(1.5e-9), "1.50000e-9");
-    }
 }

@@ -88,10 +88,11 @@ fn row(rung: &Rung) -> String {
         .predicted_e_percent
         .map_or_else(|| "-".to_owned(), percent);
     let mut text = format!(
-        "| {} | {} | {predicted} | {:+.0} |",
+        "| {} | {} | {predicted} | {} |",
         rung.model,
         percent(rung.e_percent),
         rung.aicc_above_best
+            .map_or_else(|| "-".to_owned(), |aicc| format!("{aicc:+.0}"))
     );
     for parameter in brdf_fit::model::Parameter::ALL {
         let estimate = rung.estimates.iter().find(|e| e.parameter == parameter);

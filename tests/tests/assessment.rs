@@ -198,3 +198,100 @@ fn a_folder_of_pictures_has_a_page_that_needs_nothing_else() {
         );
     }
 }
+
+/// A scan as text: incidences and views in degrees, f_r of each.
+fn scan_file(folder: &std::path::Path, rows: impl Iterator<Item = (i32, i32, f64)>) -> String {
+    let path = folder.join("scan.csv");
+    let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
+    for (psi, theta, brdf) in rows {
+        text += &format!("{psi},{theta},{brdf}\n");
+    }
+    fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// A background taken off too much: the best Lambertian weight is 0, and no parameter is left.
+#[test]
+fn a_model_all_of_whose_parameters_are_on_their_bounds_does_not_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let angles = [0, 30, 60]
+        .into_iter()
+        .flat_map(|psi| (-80..=80).step_by(10).map(move |theta| (psi, theta)));
+    let rows = angles.map(|(psi, theta)| {
+        let peak = if theta == -psi { 1.0 } else { -0.3 };
+        (psi, theta, peak)
+    });
+    let file = scan_file(folder.path(), rows);
+    for extra in [
+        "--compare",
+        "--model=lambert",
+        "--robust=huber",
+        "--robust=tukey",
+    ] {
+        let output = run_fit([file.as_str(), "--n", "1.5", extra]);
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+}
+
+#[test]
+fn tiny_scans_have_no_numbers_that_are_none() {
+    let folder = tempfile::tempdir().unwrap();
+    for count in [2, 4, 5, 6] {
+        let rows = (0..count).map(|i| (20 * (i % 3), 10 * i - 20, 0.1 + 0.03 * f64::from(i % 4)));
+        let file = scan_file(folder.path(), rows);
+        let json = folder.path().join("fit.json");
+        let model = if count == 2 { "lambert" } else { "three" };
+        let output = run_fit([
+            file.as_str(),
+            "--n",
+            "1.5",
+            "--model",
+            model,
+            "--json",
+            json.to_str().unwrap(),
+        ]);
+        let text = String::from_utf8_lossy(&output.stdout);
+        if output.status.success() {
+            assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+        }
+        let document = fs::read_to_string(&json).unwrap();
+        assert!(serde_json::from_str::<Document>(&document).is_ok());
+    }
+}
+
+#[test]
+fn many_incidences_are_assessed_in_folds() {
+    let folder = tempfile::tempdir().unwrap();
+    let angles = (0..80).flat_map(|psi| (-80..=80).step_by(10).map(move |theta| (psi, theta)));
+    let rows = angles.map(|(psi, theta)| {
+        let off = f64::from(theta + psi) / 20.0;
+        (psi, theta, 0.05 + 0.2 / (1.0 + off * off))
+    });
+    let file = scan_file(folder.path(), rows);
+    let output = run_fit([file.as_str(), "--n", "1.5"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        text.contains("prediction of each incidence from the others: E ="),
+        "{text}"
+    );
+}
+
+#[test]
+fn the_page_of_the_pictures_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("report.html");
+    let output = run(&[
+        "--n",
+        "1.5",
+        "--plot",
+        folder.path().to_str().unwrap(),
+        "--json",
+        page.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!page.exists());
+}

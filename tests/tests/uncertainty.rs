@@ -5,6 +5,7 @@ use brdf_core::published::PUBLISHED;
 use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
 use brdf_fit::model::Parameter;
 use brdf_fit::report::{Depth, Report};
+use brdf_fit::robust::Loss;
 use brdf_fit::synthetic::scan;
 use brdf_fit::uncertainty::Knowledge;
 use brdf_fit::weights::Weights;
@@ -159,5 +160,21 @@ fn the_bootstrap_over_incidences_stands_beside_the_intervals() {
             assert!(spread.from <= estimate.value && estimate.value <= spread.to);
             assert!(ratio > 0.5 && ratio < 100.0, "{ratio}");
         }
+    }
+}
+
+/// The weights of a robust loss follow the residuals; the intervals know of that.
+#[test]
+fn intervals_of_robust_fits_cover_the_truth() {
+    let row = PUBLISHED[4];
+    let noise = |reading: &mut Measurement, z: f64| reading.brdf += 0.003 * z / reading.theta.cos();
+    for loss in [Loss::Huber, Loss::Tukey] {
+        let options = FitOptions {
+            robust: Some(loss),
+            global_check: false,
+            ..options(row.n)
+        };
+        let covered = coverage(row.parameters, row.n, &options, noise);
+        check(&loss.to_string(), covered);
     }
 }

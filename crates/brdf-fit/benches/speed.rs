@@ -119,7 +119,7 @@ fn fits(c: &mut Criterion) {
         ("the same, neighbours", Depth::Compared),
     ] {
         group.bench_function(name, |b| {
-            b.iter(|| Report::of(black_box(&scan), &all, depth))
+            b.iter(|| Report::of(black_box(&scan), &all, depth));
         });
     }
     let start = fit(&scan, &options(None, lm, false))

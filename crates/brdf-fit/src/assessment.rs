@@ -1,6 +1,7 @@
 //! What a fit is worth: its uncertainty, its prediction of what was not measured, whether it is
 //! physically possible, and whether a smaller model would do.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use brdf_core::fresnel::Dielectric;
@@ -36,6 +37,8 @@ const TOLERANCE: f64 = 1e-4;
 pub struct Assessment {
     /// How many readings it rests on: all, or about [`ASSESSED_READINGS`] of them.
     pub readings: usize,
+    /// E of the fit that is assessed, over the readings that it rests on, in percent.
+    pub e_percent: f64,
     /// The spread of each parameter over bootstrap resamples of the incidences; empty where there
     /// are fewer than 3.
     pub bootstrap: Vec<Spread>,
@@ -84,11 +87,14 @@ pub struct Rung {
     pub e_percent: f64,
     /// E of the prediction of each incidence from the others, in percent.
     pub predicted_e_percent: Option<f64>,
+    /// How many incidences could be predicted: those whose others suffice for a fit.
+    pub predicted_incidences: usize,
     /// Akaike's information criterion with the correction for few readings, less that of the best:
     /// N ln E + 2 K + 2 K (K + 1)/(N - K - 1), K being the free parameters and the variance. It
     /// assumes that the terms under the sum of E err independently of each other, normally and
     /// alike; the readings of a scan rarely do, so that it favours large models.
-    pub aicc_above_best: f64,
+    /// `None` where there are too few readings for it.
+    pub aicc_above_best: Option<f64>,
     /// What the data say of each free parameter.
     pub estimates: Vec<Estimate>,
     /// The incidence from which the reflectance is above 1, in degrees.
@@ -173,13 +179,16 @@ fn violation_deg(brdf: &AnyBrdf) -> Option<f64> {
 /// Assesses a fit of the measurements, and fits the ladder of models beside it; with `compare`
 /// also the neighbours.
 ///
-/// Prediction, bootstrap and models are those of fits that are free of the condition rho(psi) <= 1.
+/// Prediction, bootstrap and models are those of least squares fits, free of the condition
+/// rho(psi) <= 1; readings that a robust fit rejects are left out for all of them alike.
 /// Models that cannot be fitted, for want of readings or of a refractive index, are named.
 pub fn assess(
     measurements: &Measurements,
     fit: &Fit,
     compare: bool,
 ) -> Result<Assessment, FitError> {
+    let accepted = accepted_readings(measurements, fit);
+    let measurements = accepted.as_ref().unwrap_or(measurements);
     let thinned;
     let scan = if measurements.readings().len() > ASSESSED_READINGS {
         thinned = measurements.thinned(ASSESSED_READINGS);
@@ -194,6 +203,7 @@ pub fn assess(
     };
     let options = FitOptions {
         energy_limit: None,
+        robust: None,
         ..fit.options.clone()
     };
     let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
@@ -206,12 +216,10 @@ pub fn assess(
             }),
         }
     }
-    let best = rungs
-        .iter()
-        .map(|rung| rung.aicc_above_best)
-        .fold(f64::INFINITY, f64::min);
+    let best = rungs.iter().filter_map(|rung| rung.aicc_above_best);
+    let best = best.fold(f64::INFINITY, f64::min);
     for rung in &mut rungs {
-        rung.aicc_above_best -= best;
+        rung.aicc_above_best = rung.aicc_above_best.map(|aicc| aicc - best);
     }
 
     let fitted = fit_scan(scan, &options)?;
@@ -219,6 +227,7 @@ pub fn assess(
     let (model, at) = (fit.model(), fitted.fit.at());
     Ok(Assessment {
         readings: scan.readings().len(),
+        e_percent: fitted.fit.e_percent,
         bootstrap: bootstrap(&fitted.criterion, &search, model, &at),
         prediction: leave_one_out(&fitted.criterion, &search, model, &at),
         physics: Physics::of(model, &fit.at()).ok_or_else(|| {
@@ -228,6 +237,20 @@ pub fn assess(
         models: rungs,
         left_out,
     })
+}
+
+/// The readings that a robust fit does not reject; `None` where none are rejected.
+fn accepted_readings(measurements: &Measurements, fit: &Fit) -> Option<Measurements> {
+    let robust = fit
+        .robust
+        .as_ref()
+        .filter(|robust| !robust.rejected.is_empty())?;
+    let rejected: HashSet<usize> = robust.rejected.iter().map(|r| r.reading).collect();
+    let readings = measurements.readings().iter().enumerate();
+    let accepted = readings
+        .filter(|(i, _)| !rejected.contains(i))
+        .map(|(_, r)| *r);
+    Measurements::new(measurements.source.clone(), accepted.collect()).ok()
 }
 
 /// The model of the ladder that suffices for a scan: see [`Verdict`]. The paper's where nothing can
@@ -248,19 +271,22 @@ fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung,
         model,
         start: None,
         energy_limit: None,
+        robust: None,
         ..options.clone()
     };
     let fitted = fit_scan(scan, &options)?;
     let (fit, criterion, search) = (&fitted.fit, &fitted.criterion, fitted.search());
     let at = fit.at();
     let brdf = AnyBrdf::new(model.family(), &at).ok();
+    let prediction = leave_one_out(criterion, &search, model, &at);
     Ok(Rung {
         model,
         parameters: at,
         e_percent: fit.e_percent,
-        predicted_e_percent: leave_one_out(criterion, &search, model, &at).map(|p| p.e_percent),
+        predicted_e_percent: prediction.as_ref().map(|p| p.e_percent),
+        predicted_incidences: prediction.map_or(0, |p| p.count()),
         aicc_above_best: aicc(fit),
-        estimates: Uncertainty::of(criterion, model, &at, options.weights.by_sigma).estimates,
+        estimates: Uncertainty::of(criterion, model, &at, options.weights.by_sigma, 1.0).estimates,
         violation_deg: brdf.as_ref().and_then(violation_deg),
     })
 }
@@ -274,21 +300,25 @@ impl Fitted {
 }
 
 /// See [`Rung::aicc_above_best`].
-fn aicc(fit: &Fit) -> f64 {
+fn aicc(fit: &Fit) -> Option<f64> {
     let readings = (fit.readings - fit.weightless) as f64;
     let parameters = (fit.model().free().len() + 1) as f64;
     let spare = readings - parameters - 1.0;
     if spare <= 0.0 {
-        return f64::INFINITY;
+        return None;
     }
     let e = (0.01 * fit.e_percent).max(f64::MIN_POSITIVE);
-    readings * e.ln() + 2.0 * parameters + 2.0 * parameters * (parameters + 1.0) / spare
+    let correction = 2.0 * parameters * (parameters + 1.0) / spare;
+    Some(readings * e.ln() + 2.0 * parameters + correction)
 }
 
 fn verdict(rungs: &[Rung]) -> Option<Verdict> {
     let ladder = rungs
         .iter()
         .filter(|rung| Model::LADDER.contains(&rung.model));
+    // Only predictions of the same incidences can be compared.
+    let most = ladder.clone().map(|rung| rung.predicted_incidences).max()?;
+    let ladder = ladder.filter(|rung| rung.predicted_incidences == most);
     let predicted: Vec<(Model, f64)> = ladder
         .filter_map(|rung| Some((rung.model, rung.predicted_e_percent?)))
         .collect();

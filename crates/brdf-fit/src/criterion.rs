@@ -16,6 +16,9 @@ use crate::weights::Weights;
 /// the range of numbers; far beyond any BRDF.
 const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
+/// More incidences than this are left out several at a time.
+pub const MOST_FOLDS: usize = 24;
+
 /// So many readings are evaluated together: their columns stay in the nearest cache.
 const BLOCK: usize = 32;
 
@@ -245,6 +248,12 @@ impl Criterion {
     /// The rows of each incidence, in ascending order.
     pub(crate) fn segments(&self) -> &[Segment] {
         &self.segments
+    }
+
+    /// How many folds the incidences are sorted into, to be left out or drawn together: incidence i
+    /// is in fold i modulo their number. One each, unless there are very many.
+    pub(crate) fn folds(&self) -> usize {
+        self.segments.len().min(MOST_FOLDS)
     }
 
     /// Which reading each row is.

@@ -4,6 +4,7 @@ use argmin::core::{CostFunction, Error, Executor, State as _};
 use argmin::solver::neldermead::NelderMead;
 use brdf_core::{AnyBrdf, Family, ModelParameters};
 use nalgebra::DVector;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, ProfileSums};
@@ -21,8 +22,11 @@ const STEPS: u32 = 17;
 /// Relative tolerance of the reflectances.
 const TOLERANCE: f64 = 1e-5;
 
-/// Points of the search whose reflectances are worked out, at the most.
-const MOST_POINTS: usize = 100;
+/// Points of the search from which simplices start.
+const STARTS: usize = 6;
+
+/// Relative tolerance of the reflectances by which the points of the search are ranked.
+const ROUGH: f64 = 0.03;
 
 /// The simplex has converged when E differs by less than this fraction of it over its corners.
 const SPREAD: f64 = 1e-12;
@@ -49,8 +53,8 @@ pub struct EnergyConstraint {
 ///
 /// For given k1, n and p the reflectance is k2 s(psi) + kD, so that the condition is the one line
 /// k2 S + kD <= 1 with S the largest s up to the limit, and the best weights under it are known in
-/// closed form. Over the points of the search they are worked out in the order of E without the
-/// condition, which can only be lower, until none can be better; a simplex goes on from the best.
+/// closed form. The points of the search are ranked by E with these weights, S being taken at the
+/// limit alone and roughly; simplices go on from the best few, with S in full.
 pub(crate) fn conserve(
     criterion: &Criterion,
     model: Model,
@@ -67,27 +71,13 @@ pub(crate) fn conserve(
     if bounded.largest_reflectance(best) <= 1.0 {
         return Ok(*best);
     }
-    let search = Search::new(criterion, model);
     let mut lowest = bounded.best_weights(best);
-    for point in search.whole().ascending().into_iter().take(MOST_POINTS) {
-        if point.error >= lowest.1 {
-            break;
-        }
-        let candidate = bounded.best_weights(&point.parameters);
-        if candidate.1 < lowest.1 {
-            lowest = candidate;
-        }
-    }
-    for _ in 0..SIMPLICES {
-        let next = bounded
-            .simplex(&lowest.0, lowest.1)
+    for start in bounded.best_points() {
+        let found = bounded
+            .descend(&start)
             .map_err(|error| FitError::Solver(error.to_string()))?;
-        let gain = lowest.1 - next.1;
-        if gain > 0.0 {
-            lowest = next;
-        }
-        if gain <= 1e-9 * lowest.1 {
-            break;
+        if found.1 < lowest.1 {
+            lowest = found;
         }
     }
     Ok(lowest.0)
@@ -103,18 +93,23 @@ fn axes(model: Model) -> Vec<Parameter> {
 
 /// The largest reflectance s(psi) of the specular part alone with k2 = 1, up to the limit.
 fn largest_specular(family: Family, at: &ModelParameters, limit: f64) -> f64 {
+    (0..=STEPS)
+        .map(|step| limit * f64::from(step) / f64::from(STEPS))
+        .map(|psi| specular(family, at, psi, TOLERANCE))
+        .fold(0.0, f64::max)
+}
+
+/// s(psi), the reflectance of the specular part alone with k2 = 1.
+fn specular(family: Family, at: &ModelParameters, psi: f64, tolerance: f64) -> f64 {
     let unit = ModelParameters {
         k2: 1.0,
         kd: 0.0,
         ..*at
     };
-    let Ok(brdf) = AnyBrdf::new(family, &unit) else {
-        return f64::INFINITY;
-    };
-    (0..=STEPS)
-        .map(|step| limit * f64::from(step) / f64::from(STEPS))
-        .filter_map(|psi| brdf.hemispherical_reflectance(psi, TOLERANCE).ok())
-        .fold(0.0, f64::max)
+    AnyBrdf::new(family, &unit)
+        .ok()
+        .and_then(|brdf| brdf.hemispherical_reflectance(psi, tolerance).ok())
+        .unwrap_or(f64::INFINITY)
 }
 
 struct Bounded<'a> {
@@ -143,6 +138,42 @@ impl Bounded<'_> {
         let (k2, kd) = weights_below(self.model, &sums, largest);
         let bounded = ModelParameters { k2, kd, ..*at };
         (bounded, self.criterion.error(&bounded))
+    }
+
+    /// The lowest points of the search under the condition, roughly; the lowest first.
+    fn best_points(&self) -> Vec<ModelParameters> {
+        let search = Search::new(self.criterion, self.model);
+        let ranked = search.whole().ascending();
+        let mut ranked: Vec<(ModelParameters, f64)> = ranked
+            .into_par_iter()
+            .map(|point| {
+                let at = point.parameters;
+                let largest = specular(self.model.family(), &at, self.limit, ROUGH);
+                let sums = self.criterion.profile_sums(&at);
+                let (k2, kd) = weights_below(self.model, &sums, largest);
+                let at = ModelParameters { k2, kd, ..at };
+                (at, self.criterion.error(&at))
+            })
+            .collect();
+        ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+        ranked.truncate(STARTS);
+        ranked.into_iter().map(|(at, _)| at).collect()
+    }
+
+    /// Simplices one after another, until one brings nothing.
+    fn descend(&self, start: &ModelParameters) -> Result<(ModelParameters, f64), Error> {
+        let mut lowest = self.best_weights(start);
+        for _ in 0..SIMPLICES {
+            let next = self.simplex(&lowest.0, lowest.1)?;
+            let gain = lowest.1 - next.1;
+            if gain > 0.0 {
+                lowest = next;
+            }
+            if gain <= 1e-9 * lowest.1 {
+                break;
+            }
+        }
+        Ok(lowest)
     }
 
     fn at(&self, x: &DVector<f64>) -> Option<ModelParameters> {
@@ -255,7 +286,8 @@ mod tests {
     fn sample_002_can_be_fitted_without_making_light() {
         let row = PUBLISHED[3];
         let scan = scan(row.parameters, row.n);
-        for model in [Model::Specular, Model::Three, Model::ThreeN] {
+        let mut errors = Vec::new();
+        for model in [Model::Specular, Model::Three, Model::ThreeN, Model::PowerN] {
             let free = fit(&scan, &options(row.n, None, model)).unwrap();
             let bound = fit(&scan, &options(row.n, Some(80.0), model)).unwrap();
             let energy = bound.energy.unwrap();
@@ -270,7 +302,13 @@ mod tests {
                 .map(|psi| reflectance(f64::from(psi)))
                 .fold(0.0, f64::max);
             assert!((largest - 1.0).abs() < 1e-3, "{model}: {largest}");
+            errors.push(bound.e_percent);
         }
+        // Each contains the one before.
+        assert!(
+            errors.is_sorted_by(|a, b| *b <= a * (1.0 + 1e-6)),
+            "{errors:?}"
+        );
     }
 
     /// By brute force over kD and k2 on the line and inside, for many widths.

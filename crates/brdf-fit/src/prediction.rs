@@ -12,7 +12,7 @@ use crate::profile::Search;
 use crate::stages::{IncidenceError, polish};
 use crate::words::in_degrees;
 
-/// Resamples of the bootstrap: the ends of its 95 % interval are the 5th and the 196th.
+/// Resamples of the bootstrap: the ends of its 95 % interval are the 6th and the 195th.
 pub const RESAMPLES: usize = 200;
 
 /// The bootstrap draws the same resamples in every run.
@@ -29,9 +29,17 @@ pub struct Prediction {
     pub e_percent: f64,
 }
 
+impl Prediction {
+    /// How many incidences could be predicted.
+    pub fn count(&self) -> usize {
+        let predicted = |incidence: &&IncidenceError| incidence.e_percent.is_some();
+        self.incidences.iter().filter(predicted).count()
+    }
+}
+
 /// Predicts each incidence from a fit of the others; `None` where there is but one incidence.
 ///
-/// Each fit starts from the lowest point of the search over its own incidences, and from the fit of
+/// More than [`MOST_FOLDS`](crate::criterion::MOST_FOLDS) incidences are left out several at a time, in that many folds. Each fit starts from the lowest point of the search over its own incidences, and from the fit of
 /// all; the lower minimum counts.
 pub(crate) fn leave_one_out(
     criterion: &Criterion,
@@ -41,9 +49,13 @@ pub(crate) fn leave_one_out(
 ) -> Option<Prediction> {
     let segments = criterion.segments();
     let (mut above, mut below) = (0.0, 0.0);
+    let folds = criterion.folds();
+    let fits: Vec<Option<ModelParameters>> = (0..folds)
+        .map(|fold| fit_of_others(criterion, search, model, at, fold))
+        .collect();
     let incidences = segments.iter().enumerate().map(|(i, segment)| {
-        let sums = fit_of_others(criterion, search, model, at, i)
-            .map(|others| squares(criterion, segment, &others));
+        let others = fits[i % folds].as_ref();
+        let sums = others.map(|others| squares(criterion, segment, others));
         if let Some((errors, readings)) = sums {
             above += errors;
             below += readings;
@@ -62,7 +74,7 @@ pub(crate) fn leave_one_out(
     })
 }
 
-/// The parameters of a fit of all incidences but one.
+/// The parameters of a fit of all incidences but those of one fold.
 fn fit_of_others(
     criterion: &Criterion,
     search: &Search,
@@ -70,7 +82,8 @@ fn fit_of_others(
     at: &ModelParameters,
     left_out: usize,
 ) -> Option<ModelParameters> {
-    let others = criterion.subset(|i| i != left_out).ok()?;
+    let folds = criterion.folds();
+    let others = criterion.subset(|i| i % folds != left_out).ok()?;
     if others.len() - others.weightless() <= model.free().len() {
         return None;
     }
@@ -105,15 +118,15 @@ pub struct Spread {
 }
 
 /// Fits [`RESAMPLES`] sets of as many incidences as there are, drawn with repetition from them: the
-/// bootstrap over incidences, which knows that the readings of one incidence err together. Empty
-/// where there are fewer than 3 incidences.
+/// bootstrap over incidences, which knows that the readings of one incidence err together. More than
+/// [`MOST_FOLDS`](crate::criterion::MOST_FOLDS) incidences are drawn several at a time. Empty where there are fewer than 3.
 pub(crate) fn bootstrap(
     criterion: &Criterion,
     search: &Search,
     model: Model,
     at: &ModelParameters,
 ) -> Vec<Spread> {
-    let count = criterion.segments().len();
+    let count = criterion.folds();
     if count < 3 {
         return Vec::new();
     }
@@ -139,7 +152,8 @@ fn resample(
     times: &[f64],
 ) -> Option<ModelParameters> {
     let mut factors = vec![0.0; criterion.len()];
-    for (segment, times) in criterion.segments().iter().zip(times) {
+    let segments = criterion.segments().iter();
+    for (segment, times) in segments.zip(times.iter().cycle()) {
         factors[segment.rows.clone()].fill(*times);
     }
     let drawn = criterion.reweighted(|row| factors[row]).ok()?;

@@ -100,15 +100,15 @@ pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
     }
 }
 
-/// The scalar products of a search for each of its points and each incidence.
+/// The scalar products of a search for each of its points and each fold of the incidences.
 #[derive(Debug, Clone)]
 pub(crate) struct Search {
     model: Model,
     /// k1, n and p of the axes.
     axes: [Vec<f64>; 3],
-    /// uu, ua, uy: incidences within n within k1 within p.
+    /// uu, ua, uy: folds within n within k1 within p.
     lobe: Vec<[f64; 3]>,
-    /// aa, ay, yy of each incidence.
+    /// aa, ay, yy of each fold.
     fixed: Vec<[f64; 3]>,
 }
 
@@ -148,42 +148,46 @@ impl Search {
             .collect();
         let (y, a) = criterion.fixed_columns();
         let segments = criterion.segments();
+        let folds = criterion.folds();
         let mut lobe = Vec::new();
         let mut shape = Vec::with_capacity(criterion.len());
         for &p in &axes[2] {
             for &k1 in &axes[0] {
                 criterion.shape_column(k1, p, &mut shape);
                 for fresnel in &fresnel {
-                    lobe.extend(segments.iter().map(|segment| {
+                    let start = lobe.len();
+                    lobe.resize(start + folds, [0.0; 3]);
+                    for (i, segment) in segments.iter().enumerate() {
                         let rows = segment.rows.clone();
                         let (s, r) = (&shape[rows.clone()], &fresnel[rows.clone()]);
-                        lobe_products(s, r, &a[rows.clone()], &y[rows])
-                    }));
+                        let products = lobe_products(s, r, &a[rows.clone()], &y[rows]);
+                        add(&mut lobe[start + i % folds], &products, 1.0);
+                    }
                 }
             }
         }
-        let fixed = segments.iter().map(|segment| {
+        let mut fixed = vec![[0.0; 3]; folds];
+        for (i, segment) in segments.iter().enumerate() {
             let (y, a) = (&y[segment.rows.clone()], &a[segment.rows.clone()]);
             let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum();
-            [product(a, a), product(a, y), product(y, y)]
-        });
+            let products = [product(a, a), product(a, y), product(y, y)];
+            add(&mut fixed[i % folds], &products, 1.0);
+        }
         Self {
             model,
-            fixed: fixed.collect(),
+            fixed,
             axes,
             lobe,
         }
     }
 
-    /// The profile with each incidence taken so many times.
+    /// The profile with each fold of the incidences taken so many times.
     pub(crate) fn profile(&self, times: impl Fn(usize) -> f64) -> Profile<'_> {
         let times: Vec<f64> = (0..self.fixed.len()).map(times).collect();
         let sum = |products: &[[f64; 3]]| {
             let mut sum = [0.0; 3];
             for (products, times) in products.iter().zip(&times) {
-                for (sum, product) in sum.iter_mut().zip(products) {
-                    *sum += times * product;
-                }
+                add(&mut sum, products, *times);
             }
             sum
         };
@@ -305,6 +309,13 @@ impl Profile<'_> {
             .flatten()
             .map(|i| self.point(i))
             .collect()
+    }
+}
+
+/// Adds products so many times.
+fn add(sum: &mut [f64; 3], products: &[f64; 3], times: f64) {
+    for (sum, product) in sum.iter_mut().zip(products) {
+        *sum += times * product;
     }
 }
 

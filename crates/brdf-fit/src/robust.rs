@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::criterion::Criterion;
 use crate::model::Parameter;
-use crate::stages::{FitError, polish};
+use crate::stages::{FitError, ROUNDING, polish};
 
 /// Beyond so many standard deviations Huber's loss grows linearly: 95 % as efficient as least
 /// squares where the errors are normal (Huber 1981).
@@ -59,6 +59,19 @@ impl FromStr for Loss {
 }
 
 impl Loss {
+    /// The derivative of weight times deviations by the deviations.
+    fn slope(self, deviations: f64) -> f64 {
+        let x = deviations.abs();
+        match self {
+            Self::Huber => f64::from(u8::from(x < HUBER)),
+            Self::Tukey if x < REJECTED => {
+                let u2 = (x / REJECTED).powi(2);
+                (1.0 - u2) * (1.0 - 5.0 * u2)
+            }
+            Self::Tukey => 0.0,
+        }
+    }
+
     /// The weight of a reading whose residual is so many standard deviations.
     fn weight(self, deviations: f64) -> f64 {
         let x = deviations.abs();
@@ -80,6 +93,9 @@ pub struct RobustFit {
     pub scale: f64,
     /// E of the plain least squares fit, in percent.
     pub least_squares_e_percent: f64,
+    /// What E over the degrees of freedom is to be multiplied by to have the variance of the terms,
+    /// now that the weights follow the residuals: Huber's covariance of an M-estimate.
+    pub variance_factor: f64,
     /// How many readings weigh less than 1/2 by the loss.
     pub reduced: usize,
     /// The readings that are more than 4.685 standard deviations off, the farthest first.
@@ -131,6 +147,7 @@ pub(crate) fn fit_robustly(
     let robust = RobustFit {
         loss,
         scale,
+        variance_factor: variance_factor(loss, &deviations),
         least_squares_e_percent: 100.0 * criterion.error(&start),
         reduced,
         rejected,
@@ -150,11 +167,19 @@ fn reweighted_fit(
     let mut scale = 0.0;
     for _ in 0..MOST_ROUNDS {
         let residuals = criterion.residuals(&at);
-        scale = fixed_scale.unwrap_or_else(|| median_scale(criterion, &residuals));
-        if scale <= 0.0 {
+        scale = fixed_scale.unwrap_or_else(|| median_scale(criterion, &residuals, free.len()));
+        if scale * scale * criterion.len() as f64 <= ROUNDING {
+            scale = 0.0;
             break;
         }
-        weighted = criterion.reweighted(|row| loss.weight(residuals[row].0 / scale))?;
+        // Where the loss takes every reading's say, the last weights stay.
+        let Ok(next) = criterion.reweighted(|row| loss.weight(residuals[row].0 / scale)) else {
+            break;
+        };
+        if next.len() - next.weightless() <= free.len() {
+            break;
+        }
+        weighted = next;
         let next = polish(&weighted, at, free)?;
         let moved = free.iter().any(|parameter| {
             let (before, after) = (parameter.of(&at), parameter.of(&next));
@@ -168,8 +193,26 @@ fn reweighted_fit(
     Ok((at, weighted, scale))
 }
 
-/// The standard deviation by the median of the absolute residuals of those that have a say.
-fn median_scale(criterion: &Criterion, residuals: &[(f64, f64)]) -> f64 {
+/// See [`RobustFit::variance_factor`]: the mean square of weight times deviation over the square of
+/// its mean slope, against what weighted least squares would take for it.
+fn variance_factor(loss: Loss, deviations: &[f64]) -> f64 {
+    let mean = |of: &dyn Fn(f64) -> f64| {
+        deviations.iter().map(|&d| of(d)).sum::<f64>() / deviations.len() as f64
+    };
+    let influence = mean(&|d| (loss.weight(d) * d).powi(2));
+    let slope = mean(&|d| loss.slope(d));
+    let weighted = mean(&|d| loss.weight(d) * d * d) / mean(&|d| loss.weight(d));
+    let factor = influence / (slope * slope) / weighted;
+    if factor.is_finite() {
+        factor.max(1.0)
+    } else {
+        1.0
+    }
+}
+
+/// The standard deviation by the median of the absolute residuals of those that have a say, which
+/// the free parameters have made smaller.
+fn median_scale(criterion: &Criterion, residuals: &[(f64, f64)], free: usize) -> f64 {
     let (_, diffuse) = criterion.fixed_columns();
     let rows = residuals.iter().zip(diffuse);
     let mut sizes: Vec<f64> = rows
@@ -177,7 +220,9 @@ fn median_scale(criterion: &Criterion, residuals: &[(f64, f64)]) -> f64 {
         .map(|((r, _), _)| r.abs())
         .collect();
     sizes.sort_by(f64::total_cmp);
-    sizes.get(sizes.len() / 2).copied().unwrap_or(0.0) / NORMAL_MEDIAN
+    let median = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let spare = sizes.len().saturating_sub(free).max(1) as f64;
+    median / NORMAL_MEDIAN * (sizes.len() as f64 / spare).sqrt()
 }
 
 #[cfg(test)]
@@ -185,6 +230,21 @@ mod tests {
     use super::*;
     use crate::{FitOptions, Measurements, RefractiveIndex, fit};
     use brdf_core::Parameters;
+
+    #[test]
+    fn perfect_readings_are_not_rejected() {
+        let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
+        let scan = crate::synthetic::scan(truth, 1.5);
+        for loss in [Loss::Huber, Loss::Tukey] {
+            let options = FitOptions {
+                refractive_index: Some(RefractiveIndex::Same(1.5)),
+                robust: Some(loss),
+                ..FitOptions::default()
+            };
+            let fit = fit(&scan, &options).unwrap();
+            assert_eq!(fit.robust.unwrap().rejected, []);
+        }
+    }
 
     #[test]
     fn a_few_bad_readings_are_rejected_and_do_not_move_the_fit() {

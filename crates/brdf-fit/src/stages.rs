@@ -25,7 +25,7 @@ pub const FORMAT_VERSION: u32 = 1;
 const LOWER: f64 = 1e-9;
 
 /// E below which it is nothing but rounding, as a fraction.
-const ROUNDING: f64 = 1e-20;
+pub(crate) const ROUNDING: f64 = 1e-20;
 
 /// Far more iterations than Levenberg-Marquardt takes from a point of the search.
 const POLISH_ITERATIONS: u64 = 1000;

@@ -12,10 +12,7 @@ use crate::criterion::Criterion;
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::profile::best_weights;
 use crate::solver::{Method, minimise};
-use crate::stages::{Fit, Fitted};
-
-/// E below which it is nothing but rounding, as a fraction.
-const ROUNDING: f64 = 1e-20;
+use crate::stages::{Fit, Fitted, ROUNDING};
 
 /// The end of an interval is known to this fraction of its quantile.
 const END_TOLERANCE: f64 = 1e-3;
@@ -192,7 +189,17 @@ impl Uncertainty {
             return Self::held_by_energy(fit);
         }
         let given_sigma = fit.options.weights.by_sigma;
-        Self::of(&fitted.criterion, fit.model(), &fit.at(), given_sigma)
+        let factor = fit
+            .robust
+            .as_ref()
+            .map_or(1.0, |robust| robust.variance_factor);
+        Self::of(
+            &fitted.criterion,
+            fit.model(),
+            &fit.at(),
+            given_sigma,
+            factor,
+        )
     }
 
     fn held_by_energy(fit: &Fit) -> Self {
@@ -220,11 +227,14 @@ impl Uncertainty {
     /// of one, and its interval ends where E has grown by the square of the quantile times the
     /// growth that the linear theory has for one standard error. (Quantiles of Student's t, or of
     /// the normal distribution for given standard deviations.)
+    /// `variance_factor` corrects E over the degrees of freedom for the weights of a robust loss; it
+    /// is 1 without one.
     pub(crate) fn of(
         criterion: &Criterion,
         model: Model,
         at: &ModelParameters,
         given_sigma: bool,
+        variance_factor: f64,
     ) -> Self {
         let readings = criterion.len() - criterion.weightless();
         let on_bound = |parameter: &Parameter| is_on_bound(*parameter, at);
@@ -239,17 +249,12 @@ impl Uncertainty {
         let jacobian = criterion.jacobian(at, &covered);
         let inverse = inverse(&(jacobian.transpose() * &jacobian));
         let given = criterion.noise().filter(|_| given_sigma);
-        let variance = error / degrees_of_freedom as f64;
+        let variance = variance_factor * error / degrees_of_freedom as f64;
         let noise = given.map_or(Noise::Residuals, |noise| Noise::Given {
             reduced_chi_square: reduced_chi_square(criterion, at, noise, degrees_of_freedom),
         });
         let covariance = inverse.as_ref().map(|inverse| match given {
-            Some(noise) => {
-                let noisy = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
-                    jacobian[(i, j)] * noise[i]
-                });
-                inverse * (noisy.transpose() * &noisy) * inverse
-            }
+            Some(noise) => sandwich(&jacobian, inverse, noise),
             None => inverse * variance,
         });
         let quantiles = quantiles(given.is_none().then_some(degrees_of_freedom));
@@ -262,6 +267,7 @@ impl Uncertainty {
             covariance: covariance.as_ref(),
             inverse: inverse.as_ref(),
             variance,
+            given,
             quantiles,
         };
         let mut estimates: Vec<Estimate> =
@@ -328,7 +334,8 @@ fn has_effect(parameter: Parameter, at: &ModelParameters) -> bool {
 /// told apart.
 fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale: Vec<f64> = matrix.diagonal().iter().map(|d| d.sqrt()).collect();
-    if scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+    // No parameter at all has no covariance either.
+    if scale.is_empty() || scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
         return None;
     }
     let scaled = |m: &DMatrix<f64>| {
@@ -342,6 +349,14 @@ fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         return None;
     }
     Some(scaled(&correlation.cholesky()?.inverse()))
+}
+
+/// (J^T J)^-1 J^T V J (J^T J)^-1 for variances V, given as standard deviations.
+fn sandwich(jacobian: &DMatrix<f64>, inverse: &DMatrix<f64>, noise: &[f64]) -> DMatrix<f64> {
+    let noisy = DMatrix::from_fn(jacobian.nrows(), jacobian.ncols(), |i, j| {
+        jacobian[(i, j)] * noise[i]
+    });
+    inverse * (noisy.transpose() * &noisy) * inverse
 }
 
 fn reduced_chi_square(
@@ -381,7 +396,10 @@ struct Profiler<'a> {
     covered: &'a [Parameter],
     covariance: Option<&'a DMatrix<f64>>,
     inverse: Option<&'a DMatrix<f64>>,
+    /// Variance of each term under the sum of E.
     variance: f64,
+    /// Its standard deviation for each, where the scan states them.
+    given: Option<&'a [f64]>,
     quantiles: [f64; 2],
 }
 
@@ -408,7 +426,8 @@ impl Profiler<'_> {
         }
         let value = parameter.of(self.at);
         if is_on_bound(parameter, self.at) {
-            let end = |sign: f64| self.end(parameter, sign, self.variance, self.quantiles[1]);
+            let growth = self.growth_on_bound(parameter);
+            let end = |sign: f64| self.end(parameter, sign, growth, self.quantiles[1]);
             let (from, to) = if value > parameter.range().0 {
                 (end(-1.0), None)
             } else if has_natural_bound(parameter) {
@@ -441,6 +460,21 @@ impl Profiler<'_> {
                 interval_95,
             },
         }
+    }
+
+    /// The growth of E for one standard error of a parameter on its bound, as if it were covered.
+    fn growth_on_bound(&self, parameter: Parameter) -> f64 {
+        let Some(noise) = self.given else {
+            return self.variance;
+        };
+        let with: Vec<Parameter> = std::iter::once(parameter)
+            .chain(self.covered.iter().copied())
+            .collect();
+        let jacobian = self.criterion.jacobian(self.at, &with);
+        let Some(inverse) = inverse(&(jacobian.transpose() * &jacobian)) else {
+            return self.variance;
+        };
+        sandwich(&jacobian, &inverse, noise)[(0, 0)] / inverse[(0, 0)]
     }
 
     fn interval(

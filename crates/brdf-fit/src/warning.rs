@@ -240,14 +240,25 @@ fn turned_round(measurements: &Measurements, fit: &Fit) -> Option<Warning> {
     let turned = Measurements::new("", turned).ok()?;
     // The paper's model at this n tells the sides apart as well as any.
     let (family, weights) = (Model::Three.family(), &fit.options.weights);
-    let criterion = Criterion::new(&turned, family, fit.n, weights).ok()?;
-    let e_percent = 100.0 * Search::new(&criterion, Model::Three).whole().lowest().error;
-    (e_percent < TURNED_GAIN * fit.e_percent).then_some(Warning::TurnedRound { e_percent })
+    let lowest = |scan: &Measurements| {
+        let criterion = Criterion::new(scan, family, fit.n, weights).ok()?;
+        Some(100.0 * Search::new(&criterion, Model::Three).whole().lowest().error)
+    };
+    let (e_percent, straight) = (lowest(&turned)?, lowest(measurements)?);
+    let is_better = e_percent < TURNED_GAIN * straight.min(fit.e_percent);
+    is_better.then_some(Warning::TurnedRound { e_percent })
 }
 
 fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
     let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;
     let psi_deg = brdf.energy_violation_angle()?.to_degrees();
+    // Beyond the limit that the user has set it is no news.
+    if fit
+        .energy
+        .is_some_and(|energy| psi_deg > energy.limit_deg - 0.1)
+    {
+        return None;
+    }
     Some(Warning::ReflectanceAboveOne { psi_deg })
 }
 

@@ -232,6 +232,10 @@ fn sector(azimuths: &[f64], i: usize) -> f64 {
 /// cos theta at the inner edge less that at the outer, for each of the ascending zenith angles.
 fn rings(thetas: &[f64]) -> Vec<f64> {
     let last = thetas.len() - 1;
+    // The normal alone stands for all of its sector.
+    if thetas[last] == 0.0 {
+        return vec![1.0 / thetas.len() as f64; thetas.len()];
+    }
     let inner = |i: usize| {
         if i == 0 {
             0.0

@@ -9,7 +9,7 @@ use brdf_fit::model::Model;
 use brdf_fit::output::{resolved, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{
-    Depth, Document, ModelChoice, Report, write_curves, write_folder, write_models,
+    Depth, Document, ModelChoice, PAGE, Report, write_curves, write_folder, write_models,
     write_parameters,
 };
 use brdf_fit::robust::Loss;
@@ -257,7 +257,8 @@ impl Arguments {
     /// No output takes the place of a scan or of another output.
     fn check_outputs(&self) -> Result<(), String> {
         let mut taken: Vec<PathBuf> = self.files.iter().map(|file| resolved(file)).collect();
-        for output in [&self.json, &self.curves].into_iter().flatten() {
+        let page = self.plot.as_ref().map(|folder| folder.join(PAGE));
+        for output in [&self.json, &self.curves, &page].into_iter().flatten() {
             let target = resolved(output);
             let is_regular = !target.exists() || target.is_file();
             if is_regular && taken.contains(&target) {
@@ -316,7 +317,11 @@ fn main() -> ExitCode {
         let wavelength = report
             .wavelength_um
             .map_or_else(String::new, |w| format!(", {w} um"));
-        complain(&format!("{}{wavelength}: {error}", report.file));
+        let model = match arguments.models().len() {
+            1 => String::new(),
+            _ => format!(", {}", report.model),
+        };
+        complain(&format!("{}{wavelength}{model}: {error}", report.file));
     }
     let reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
     if let Err(messages) = deliver(&arguments, &scans, reports) {

@@ -61,10 +61,7 @@ pub fn write_models(reports: &[Report], writer: impl io::Write) -> io::Result<()
     for report in reports {
         let fit = report.fit.as_ref();
         let mut record = record(report);
-        record.insert(
-            3,
-            fit.map_or_else(String::new, |fit| fit.model().to_string()),
-        );
+        record.insert(3, report.model.to_string());
         record.push(number(fit.map(|fit| fit.p)));
         csv.write_record(record)?;
     }

@@ -12,7 +12,7 @@ use crate::output::{WriteError, write_file};
 use crate::plot::{Figure, PlotError, figures, write_figures};
 
 /// The name of the page.
-const PAGE: &str = "report.html";
+pub const PAGE: &str = "report.html";
 
 /// Why the folder could not be written whole.
 #[derive(Debug, thiserror::Error)]

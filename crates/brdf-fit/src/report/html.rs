@@ -229,7 +229,8 @@ fn models(assessment: &Assessment) -> String {
             format!("{:.3}", rung.e_percent),
             rung.predicted_e_percent
                 .map_or_else(|| "-".to_owned(), |e| format!("{e:.3}")),
-            format!("{:+.1}", rung.aicc_above_best),
+            rung.aicc_above_best
+                .map_or_else(|| "-".to_owned(), |aicc| format!("{aicc:+.1}")),
         ];
         row.extend(Parameter::ALL.map(|parameter| {
             let estimate = rung.estimates.iter().find(|e| e.parameter == parameter);

@@ -10,13 +10,14 @@ pub use csv::{
     CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, write_curves, write_models, write_parameters,
 };
 
-pub use folder::{FolderError, figures_of, write_folder};
+pub use folder::{FolderError, PAGE, figures_of, write_folder};
 pub use html::html;
 
 use serde::{Deserialize, Serialize};
 
 use crate::assessment::{Assessment, assess, sufficient_model};
 use crate::measurement::{Measurement, Measurements, Metadata};
+use crate::model::Model;
 use crate::solver::Ending;
 use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, Fitted, fit_scan};
 use crate::uncertainty::Uncertainty;
@@ -33,6 +34,9 @@ pub struct Report {
     pub ignored_columns: Vec<String>,
     /// Wavelength in micrometres, where the file states one.
     pub wavelength_um: Option<f64>,
+    /// The model that was to be fitted.
+    #[serde(default)]
+    pub model: Model,
     /// How many readings there are.
     pub readings: usize,
     /// The fit, where there is one.
@@ -106,6 +110,7 @@ impl Report {
             ignored_columns: measurements.ignored_columns.clone(),
             wavelength_um: measurements.wavelengths().first().copied().flatten(),
             readings: measurements.readings().len(),
+            model: options.model,
             warnings: Vec::new(),
             fit: None,
             error: None,

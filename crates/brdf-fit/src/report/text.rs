@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use brdf_core::Parameters;
+use brdf_core::{ModelParameters, Parameters};
 
 use super::Report;
 use crate::assessment::{Assessment, Physics};
@@ -96,13 +96,14 @@ fn stage_table(fit: &Fit) -> String {
     };
     let work = |stage: &Stage| {
         format!(
-            "{:>10}{:>7}{:>7}{:>9.1}  {}: {}",
+            "{:>10}{:>7}{:>7}{:>9.1}  {}: {}{}",
             stage.readings,
             stage.iterations,
             stage.evaluations,
             1e6 * stage.seconds,
             stage.method.short_name(),
-            stage.ending
+            stage.ending,
+            further_parameters(fit.model(), &stage.parameters)
         )
     };
     line(
@@ -161,6 +162,15 @@ fn stage_table(fit: &Fit) -> String {
         }
     }
     text
+}
+
+/// n and p of a stage, where the model has them free.
+fn further_parameters(model: Model, at: &ModelParameters) -> String {
+    [Parameter::N, Parameter::P]
+        .into_iter()
+        .filter(|&parameter| model.frees(parameter))
+        .map(|parameter| format!("; {parameter} = {}", digits(parameter.of(at))))
+        .collect()
 }
 
 fn incidence_table(fit: &Fit, assessment: Option<&Assessment>) -> String {
@@ -368,14 +378,28 @@ fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
     if fit.energy.is_some_and(|energy| energy.binding) {
         text += "\n  prediction and models are of fits without the condition rho <= 1\n";
     }
+    if fit
+        .robust
+        .as_ref()
+        .is_some_and(|robust| !robust.rejected.is_empty())
+    {
+        text +=
+            "\n  prediction and models are of least squares fits without the rejected readings\n";
+    }
     let _ = match &assessment.prediction {
         Some(prediction) => writeln!(
             text,
             "\n  prediction of each incidence from the others: E = {} % (the fit: {} %)",
             digits(prediction.e_percent),
-            digits(fit.e_percent)
+            digits(assessment.e_percent)
         ),
-        None => writeln!(text, "\n  prediction: a single incidence predicts nothing"),
+        None if fit.incidences.len() < 2 => {
+            writeln!(text, "\n  prediction: a single incidence predicts nothing")
+        }
+        None => writeln!(
+            text,
+            "\n  prediction: without any one incidence too few readings are left for a fit"
+        ),
     };
     text
 }
@@ -395,15 +419,17 @@ fn model_table(assessment: &Assessment) -> String {
             .iter()
             .map(|estimate| format!("{} {estimate}", estimate.parameter))
             .collect();
+        let aicc = rung
+            .aicc_above_best
+            .map_or_else(|| "-".to_owned(), |aicc| format!("{aicc:+.1}"));
         let energy = rung
             .violation_deg
             .map_or_else(String::new, |psi| format!("; rho > 1 from {psi:.0} deg"));
         let _ = writeln!(
             text,
-            "  {:<11}{:>13}{predicted:>13}{:>+10.1}  {}{energy}",
+            "  {:<11}{:>13}{predicted:>13}{aicc:>10}  {}{energy}",
             rung.model.name(),
             digits(rung.e_percent),
-            rung.aicc_above_best,
             parameters.join(", ")
         );
     }

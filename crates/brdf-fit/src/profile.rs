@@ -175,9 +175,9 @@ impl Search {
         }
         Self {
             model,
-            fixed,
             axes,
             lobe,
+            fixed,
         }
     }
 

@@ -166,11 +166,13 @@ fn stage_table(fit: &Fit) -> String {
 
 /// n and p of a stage, where the model has them free.
 fn further_parameters(model: Model, at: &ModelParameters) -> String {
-    [Parameter::N, Parameter::P]
-        .into_iter()
-        .filter(|&parameter| model.frees(parameter))
-        .map(|parameter| format!("; {parameter} = {}", digits(parameter.of(at))))
-        .collect()
+    let mut text = String::new();
+    for parameter in [Parameter::N, Parameter::P] {
+        if model.frees(parameter) {
+            let _ = write!(text, "; {parameter} = {}", digits(parameter.of(at)));
+        }
+    }
+    text
 }
 
 fn incidence_table(fit: &Fit, assessment: Option<&Assessment>) -> String {

@@ -202,11 +202,10 @@ fn a_folder_of_pictures_has_a_page_that_needs_nothing_else() {
 /// A scan as text: incidences and views in degrees, f_r of each.
 fn scan_file(folder: &std::path::Path, rows: impl Iterator<Item = (i32, i32, f64)>) -> String {
     let path = folder.join("scan.csv");
-    let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
-    for (psi, theta, brdf) in rows {
-        text += &format!("{psi},{theta},{brdf}\n");
-    }
-    fs::write(&path, text).unwrap();
+    let header = "psi_deg,theta_deg,brdf_per_sr".to_owned();
+    let lines = rows.map(|(psi, theta, brdf)| format!("{psi},{theta},{brdf}"));
+    let lines: Vec<String> = std::iter::once(header).chain(lines).collect();
+    fs::write(&path, lines.join("\n")).unwrap();
     path.to_str().unwrap().to_owned()
 }
 

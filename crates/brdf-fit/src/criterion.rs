@@ -124,6 +124,21 @@ struct Block {
     by: [[f64; BLOCK]; 3],
 }
 
+impl Block {
+    /// A block of these rows, without their lobe yet.
+    fn new(measured: &[f64], diffuse: &[f64]) -> Self {
+        let mut block = Self {
+            y: [0.0; BLOCK],
+            a: [0.0; BLOCK],
+            u: [0.0; BLOCK],
+            by: [[0.0; BLOCK]; 3],
+        };
+        block.y[..measured.len()].copy_from_slice(measured);
+        block.a[..diffuse.len()].copy_from_slice(diffuse);
+        block
+    }
+}
+
 impl Criterion {
     /// The criterion over the measurements at the refractive index n.
     ///
@@ -469,60 +484,55 @@ impl Criterion {
         mut take: impl FnMut(Range<usize>, &Block),
     ) {
         let dielectric = Dielectric::new(n);
-        let mut block = Block {
-            y: [0.0; BLOCK],
-            a: [0.0; BLOCK],
-            u: [0.0; BLOCK],
-            by: [[0.0; BLOCK]; 3],
-        };
-        let mut fresnel = [0.0; BLOCK];
         let mut start = rows.start;
         while start < rows.end {
-            let end = (start + BLOCK).min(rows.end);
-            let count = end - start;
-            if count < BLOCK {
-                for column in [&mut block.y, &mut block.a, &mut block.u] {
-                    column[count..].fill(0.0);
-                }
-                block
-                    .by
-                    .iter_mut()
-                    .for_each(|column| column[count..].fill(0.0));
-            }
-            block.y[..count].copy_from_slice(&self.measured[start..end]);
-            block.a[..count].copy_from_slice(&self.diffuse[start..end]);
-            if n == self.n {
-                fresnel[..count].copy_from_slice(&self.fresnel[start..end]);
-            } else {
-                for (value, angles) in fresnel.iter_mut().zip(&self.angles[start..end]) {
-                    *value = dielectric.relative(angles.cos_gamma);
-                }
-            }
-            for (j, i) in (start..end).enumerate() {
+            let range = start..(start + BLOCK).min(rows.end);
+            let mut block = Block::new(&self.measured[range.clone()], &self.diffuse[range.clone()]);
+            let mut fresnel = [0.0; BLOCK];
+            self.fill_fresnel(&dielectric, range.clone(), &mut fresnel);
+            for (j, i) in range.clone().enumerate() {
                 block.u[j] = self.shape(facet, shadowing, i) * fresnel[j];
             }
             if by_k1 {
-                for (j, i) in (start..end).enumerate() {
+                for (j, i) in range.clone().enumerate() {
                     block.by[0][j] = self.shape_by_k1(facet, shadowing, i) * fresnel[j];
                 }
             }
             if by_n {
-                for (j, i) in (start..end).enumerate() {
-                    let angles = &self.angles[i];
-                    let slope =
-                        dielectric.relative_derivative_n(angles.cos_gamma, angles.sin2_gamma);
+                for (j, i) in range.clone().enumerate() {
+                    let Angles {
+                        cos_gamma,
+                        sin2_gamma,
+                        ..
+                    } = self.angles[i];
+                    let slope = dielectric.relative_derivative_n(cos_gamma, sin2_gamma);
                     block.by[1][j] = self.shape(facet, shadowing, i) * slope;
                 }
             }
             if by_p {
-                for (j, i) in (start..end).enumerate() {
-                    let angles = &self.angles[i];
-                    let slope = facet.derivative_p(angles.tan2_alpha, angles.sec_alpha);
+                for (j, i) in range.clone().enumerate() {
+                    let Angles {
+                        tan2_alpha,
+                        sec_alpha,
+                        ..
+                    } = self.angles[i];
+                    let slope = facet.derivative_p(tan2_alpha, sec_alpha);
                     block.by[2][j] = self.shadowed[i] * slope * fresnel[j];
                 }
             }
-            take(start..end, &block);
-            start = end;
+            start = range.end;
+            take(range, &block);
+        }
+    }
+
+    /// R0(gamma) of some rows: as computed beforehand where the index is the same.
+    fn fill_fresnel(&self, dielectric: &Dielectric, rows: Range<usize>, to: &mut [f64; BLOCK]) {
+        if dielectric.n() == self.n {
+            to[..rows.len()].copy_from_slice(&self.fresnel[rows]);
+        } else {
+            for (value, angles) in to.iter_mut().zip(&self.angles[rows]) {
+                *value = dielectric.relative(angles.cos_gamma);
+            }
         }
     }
 

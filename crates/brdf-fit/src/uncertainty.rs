@@ -508,7 +508,7 @@ impl Profiler<'_> {
         let scale = Scale::of(parameter);
         let (start, stop) = (scale.coordinate(value), scale.coordinate(limit));
         let linear = self.linear_step(parameter, &scale, value, quantile);
-        let distance = |x: f64| self.growth(parameter, scale.value(x), growth) - quantile;
+        let distance = |x: f64| self.deviations(parameter, scale.value(x), growth) - quantile;
         let (mut inside, mut below) = (start, -quantile);
         let mut outside: Option<(f64, f64)> = None;
         let mut trial = start + sign * linear;
@@ -575,9 +575,9 @@ impl Profiler<'_> {
         }
     }
 
-    /// sqrt((E - E at the minimum) / growth for one standard error), the other parameters fitted
-    /// anew.
-    fn growth(&self, parameter: Parameter, value: f64, growth: f64) -> f64 {
+    /// How many standard errors a value is away by the growth of E, the other parameters fitted
+    /// anew: sqrt((E - E at the minimum) / growth for one standard error).
+    fn deviations(&self, parameter: Parameter, value: f64, growth: f64) -> f64 {
         let others: Vec<Parameter> = self
             .model
             .free()

@@ -93,7 +93,7 @@ pub enum PlotError {
     #[error("the PNG cannot be encoded: {0}")]
     Png(String),
     /// The folder cannot be made.
-    #[error("{}: cannot be created: {error}", path.display())]
+    #[error("{}: cannot be made a folder for the pictures: {error}", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -371,7 +371,7 @@ mod tests {
         let message = write_figures(&[], &file.join("sub"), "a")
             .unwrap_err()
             .to_string();
-        assert!(message.contains("cannot be created"), "{message}");
+        assert!(message.contains("cannot be made a folder"), "{message}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use brdf_core::{ModelParameters, Parameters};
 
 use super::Report;
 use crate::assessment::{Assessment, Physics};
+use crate::criterion::MOST_FOLDS;
 use crate::measurement::Measurement;
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::robust::REJECTED;
@@ -387,6 +388,13 @@ fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
     {
         text +=
             "\n  prediction and models are of least squares fits without the rejected readings\n";
+    }
+    let incidences = fit.incidences.len();
+    if incidences > MOST_FOLDS {
+        let _ = writeln!(
+            text,
+            "\n  the {incidences} incidences are left out several at a time, in {MOST_FOLDS} folds"
+        );
     }
     let _ = match &assessment.prediction {
         Some(prediction) => writeln!(

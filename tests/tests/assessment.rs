@@ -277,6 +277,7 @@ fn many_incidences_are_assessed_in_folds() {
         text.contains("prediction of each incidence from the others: E ="),
         "{text}"
     );
+    assert!(text.contains("the 80 incidences are left out several at a time, in 24 folds"));
 }
 
 #[test]

@@ -32,11 +32,11 @@
 //!
 //! | points | f_r | df_r/dk2 | df_r/dk1 |
 //! |---|---|---|---|
-//! | ordinary | 0.7 / 4.5 | 0.9 / 4.5 | 1.0 / 6.5 |
-//! | extreme angles | 0.8 / 5.4 | 0.9 / 6.3 | 1.0 / 6.5 |
-//! | extreme parameters | 0.8 / 7.3 | 1.0 / 7.9 | 1.2 / 9.9 |
-//! | near the specular direction | 0.8 / 5.2 | 0.9 / 5.2 | 1.0 / 6.6 |
-//! | both angles at grazing | 0.7 / 6.5 | 1.0 / 5.7 | 1.1 / 6.2 |
+//! | ordinary | 0.7 / 4.5 | 0.9 / 4.5 | 1.0 / 5.6 |
+//! | extreme angles | 0.8 / 5.4 | 0.9 / 6.4 | 1.0 / 6.5 |
+//! | extreme parameters | 0.8 / 7.3 | 1.0 / 7.9 | 1.3 / 9.9 |
+//! | near the specular direction | 0.8 / 5.2 | 0.9 / 5.2 | 1.0 / 5.9 |
+//! | both angles at grazing | 0.7 / 6.5 | 1.0 / 6.3 | 1.1 / 6.3 |
 //!
 //! The textbook's expressions, evaluated as they are printed, have on the same points:
 //!

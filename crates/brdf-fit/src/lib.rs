@@ -18,9 +18,9 @@
 //! The data flow one way:
 //!
 //! ```text
-//! file -> read -> Measurements -> initial -> stages -> Fit -> warning, report
-//!                                     |         |
-//!                                 criterion, profile, solver
+//! file -> read -> Measurements -> initial -> stages -> Fit -> uncertainty, assessment -> report, plot
+//!                                     |         |               |
+//!                                 criterion, profile, solver    prediction, ladder of models
 //! ```
 //!
 //! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and

@@ -119,6 +119,29 @@ fn robust_fits_list_what_they_reject() {
     }
 }
 
+/// What the file says of its readings, n among it, stays with those that are not rejected.
+#[test]
+fn a_robust_fit_takes_the_index_of_the_file_for_its_assessment_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = in_workspace("data/synthetic/table1_003_0.91um_noise5.csv");
+    let mut scan = fs::read_to_string(sample).unwrap();
+    scan.push_str("0.91,30,40,9\n");
+    let path = folder.path().join("scan.csv");
+    fs::write(&path, scan).unwrap();
+    let output = run_fit([path.to_str().unwrap(), "--robust", "tukey"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert!(
+        text.contains("least squares fits without the rejected readings"),
+        "{text}"
+    );
+    assert!(text.contains("verdict: "), "{text}");
+}
+
 #[test]
 fn energy_is_conserved_where_asked_for() {
     let sample = in_workspace("data/synthetic");

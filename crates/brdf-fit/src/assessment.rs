@@ -188,24 +188,16 @@ pub fn assess(
     compare: bool,
 ) -> Result<Assessment, FitError> {
     let accepted = accepted_readings(measurements, fit);
-    let measurements = accepted.as_ref().unwrap_or(measurements);
-    let thinned;
-    let scan = if measurements.readings().len() > ASSESSED_READINGS {
-        thinned = measurements.thinned(ASSESSED_READINGS);
-        &thinned
-    } else {
-        measurements
-    };
+    let scan = &accepted
+        .as_ref()
+        .unwrap_or(measurements)
+        .thinned(ASSESSED_READINGS);
     let models = if compare {
         Model::ALL.as_slice()
     } else {
         Model::LADDER.as_slice()
     };
-    let options = FitOptions {
-        energy_limit: None,
-        robust: None,
-        ..fit.options.clone()
-    };
+    let options = plain(&fit.options);
     let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
     for &model in models {
         match rung(scan, model, &options) {
@@ -246,20 +238,26 @@ fn accepted_readings(measurements: &Measurements, fit: &Fit) -> Option<Measureme
         .as_ref()
         .filter(|robust| !robust.rejected.is_empty())?;
     let rejected: HashSet<usize> = robust.rejected.iter().map(|r| r.reading).collect();
-    let readings = measurements.readings().iter().enumerate();
-    let accepted = readings
-        .filter(|(i, _)| !rejected.contains(i))
-        .map(|(_, r)| *r);
-    Measurements::new(measurements.source.clone(), accepted.collect()).ok()
+    let accepted = (0..measurements.readings().len()).filter(|i| !rejected.contains(i));
+    Some(measurements.kept(accepted))
+}
+
+/// The options of an assessment: least squares, free of the condition rho(psi) <= 1.
+fn plain(options: &FitOptions) -> FitOptions {
+    FitOptions {
+        energy_limit: None,
+        robust: None,
+        ..options.clone()
+    }
 }
 
 /// The model of the ladder that suffices for a scan: see [`Verdict`]. The paper's where nothing can
 /// be predicted.
 pub fn sufficient_model(measurements: &Measurements, options: &FitOptions) -> Model {
-    let scan = measurements.thinned(ASSESSED_READINGS);
+    let (scan, options) = (measurements.thinned(ASSESSED_READINGS), plain(options));
     let rungs: Vec<Rung> = Model::LADDER
         .into_iter()
-        .filter_map(|model| rung(&scan, model, options).ok())
+        .filter_map(|model| rung(&scan, model, &options).ok())
         .collect();
     verdict(&rungs)
         .and_then(|verdict| verdict.model)
@@ -270,8 +268,6 @@ fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung,
     let options = FitOptions {
         model,
         start: None,
-        energy_limit: None,
-        robust: None,
         ..options.clone()
     };
     let fitted = fit_scan(scan, &options)?;

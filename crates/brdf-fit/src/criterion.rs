@@ -250,6 +250,11 @@ impl Criterion {
         self.diffuse.iter().filter(|&&a| a == 0.0).count()
     }
 
+    /// Whether more readings have a say than there are free parameters.
+    pub(crate) fn suffices_for(&self, free: &[Parameter]) -> bool {
+        self.len() - self.weightless() > free.len()
+    }
+
     /// How many readings there are.
     pub fn len(&self) -> usize {
         self.measured.len()

@@ -210,9 +210,15 @@ impl Measurements {
             .flat_map(|incidence| incidence.readings.iter().copied().step_by(step))
             .collect();
         kept.sort_unstable();
-        let mut thinned = self.without_readings();
-        thinned.readings = kept.into_iter().map(|i| self.readings[i]).collect();
-        thinned
+        self.kept(kept)
+    }
+
+    /// Some of the readings, by their indices, with all that the file says of them.
+    pub(crate) fn kept(&self, indices: impl IntoIterator<Item = usize>) -> Self {
+        Self {
+            readings: indices.into_iter().map(|i| self.readings[i]).collect(),
+            ..self.without_readings()
+        }
     }
 
     fn without_readings(&self) -> Self {

@@ -39,8 +39,9 @@ impl Prediction {
 
 /// Predicts each incidence from a fit of the others; `None` where there is but one incidence.
 ///
-/// More than [`MOST_FOLDS`](crate::criterion::MOST_FOLDS) incidences are left out several at a time, in that many folds. Each fit starts from the lowest point of the search over its own incidences, and from the fit of
-/// all; the lower minimum counts.
+/// More than [`MOST_FOLDS`](crate::criterion::MOST_FOLDS) incidences are left out several at a
+/// time, in that many folds. Each fit starts from the lowest point of the search over its own
+/// incidences, and from the fit of all; the lower minimum counts.
 pub(crate) fn leave_one_out(
     criterion: &Criterion,
     search: &Search,
@@ -84,7 +85,7 @@ fn fit_of_others(
 ) -> Option<ModelParameters> {
     let folds = criterion.folds();
     let others = criterion.subset(|i| i % folds != left_out).ok()?;
-    if others.len() - others.weightless() <= model.free().len() {
+    if !others.suffices_for(model.free()) {
         return None;
     }
     let lowest = search
@@ -119,7 +120,8 @@ pub struct Spread {
 
 /// Fits [`RESAMPLES`] sets of as many incidences as there are, drawn with repetition from them: the
 /// bootstrap over incidences, which knows that the readings of one incidence err together. More than
-/// [`MOST_FOLDS`](crate::criterion::MOST_FOLDS) incidences are drawn several at a time. Empty where there are fewer than 3.
+/// [`MOST_FOLDS`](crate::criterion::MOST_FOLDS) incidences are drawn several at a time. Empty where
+/// there are fewer than 3.
 pub(crate) fn bootstrap(
     criterion: &Criterion,
     search: &Search,
@@ -157,7 +159,7 @@ fn resample(
         factors[segment.rows.clone()].fill(*times);
     }
     let drawn = criterion.reweighted(|row| factors[row]).ok()?;
-    if drawn.len() - drawn.weightless() <= model.free().len() {
+    if !drawn.suffices_for(model.free()) {
         return None;
     }
     let lowest = search.profile(|i| times[i]).lowest().parameters;

@@ -176,7 +176,7 @@ fn reweighted_fit(
         let Ok(next) = criterion.reweighted(|row| loss.weight(residuals[row].0 / scale)) else {
             break;
         };
-        if next.len() - next.weightless() <= free.len() {
+        if !next.suffices_for(free) {
             break;
         }
         weighted = next;

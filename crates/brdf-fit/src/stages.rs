@@ -299,7 +299,7 @@ pub(crate) fn fit_scan(
 
     let all = Criterion::new(measurements, model.family(), n, &options.weights)?;
     let weightless = all.weightless();
-    if readings.len() - weightless <= model.free().len() {
+    if !all.suffices_for(model.free()) {
         return Err(too_few(readings.len() - weightless, model));
     }
     let incidences = measurements.incidences();

@@ -1,0 +1,80 @@
+//! The time of a frame: our own work, without the graphics card.
+//!
+//! `cargo bench -p brdf-viewer --bench frames`
+
+use std::fmt::Write as _;
+use std::hint::black_box;
+
+use brdf_viewer::Viewer;
+use brdf_viewer::dialogs::Native;
+use brdf_viewer::intent::{Command, Intent};
+use brdf_viewer::screenshot::Unseen;
+use brdf_viewer::state::saved::Settings;
+use criterion::{Criterion, criterion_group, criterion_main};
+
+/// 20 incidences, 200,000 readings with noise.
+fn large() -> String {
+    let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
+    for i in 0..20 {
+        for j in 0..10_000 {
+            let theta = -85.0 + 0.017 * f64::from(j);
+            let away = (theta + 4.0 * f64::from(i)).to_radians();
+            let noise = 1.0 + 0.2 * (f64::from(j) * 12.9898).sin();
+            let brdf = (0.02 + 0.2 * (-8.0 * away * away).exp()) * noise;
+            let _ = writeln!(text, "{},{theta:.3},{brdf:.6}", 4 * i);
+        }
+    }
+    text
+}
+
+/// A window with a sample in it.
+fn window(sample: Intent) -> (Unseen, Viewer) {
+    let mut window = Unseen::new([1280.0, 800.0], 1.0);
+    let mut viewer = Viewer::new(window.context(), Box::new(Native), Settings::unkept());
+    viewer.state.apply(sample);
+    window.picture(&mut viewer).expect("a picture");
+    (window, viewer)
+}
+
+fn frames(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("frame at 1280x800");
+    let samples = [
+        ("z307, 112 readings", Intent::OpenBuiltIn(0)),
+        (
+            "200,000 readings, 20 incidences",
+            Intent::OpenBytes("large.csv".to_owned(), large().into_bytes()),
+        ),
+    ];
+    for (name, sample) in samples {
+        let (mut window, mut viewer) = window(sample);
+        if viewer.state.active_sample().is_some_and(|s| s.scan().incidences.len() > 8) {
+            let id = viewer.state.active.expect("a sample");
+            viewer.state.apply(Intent::ShowAllIncidences(id, true));
+        }
+        group.bench_function(format!("{name}, nothing changes"), |bench| {
+            bench.iter(|| black_box(window.frame_and_triangles(&mut viewer)));
+        });
+        let mut turn = |viewer: &mut Viewer| {
+            let mut knobs = viewer.state.active_sample().expect("a sample").scan().knobs;
+            knobs.at.k1 = if knobs.at.k1 > 0.3 { 0.2 } else { 1.001 * knobs.at.k1 };
+            viewer.state.apply(Intent::Turn(knobs));
+        };
+        group.bench_function(format!("{name}, a slider is dragged"), |bench| {
+            bench.iter(|| {
+                turn(&mut viewer);
+                black_box(window.frame_and_triangles(&mut viewer))
+            });
+        });
+        viewer.state.apply(Intent::Do(Command::Residuals));
+        viewer.state.apply(Intent::Do(Command::Panels));
+        group.bench_function(format!("{name}, panels with residuals, dragged"), |bench| {
+            bench.iter(|| {
+                turn(&mut viewer);
+                black_box(window.frame_and_triangles(&mut viewer))
+            });
+        });
+    }
+}
+
+criterion_group!(benches, frames);
+criterion_main!(benches);

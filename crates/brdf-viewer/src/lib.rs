@@ -1,0 +1,35 @@
+//! The desktop viewer: theory against experiment for each incidence angle, with live parameters.
+//!
+//! Three parts, and what flows between them:
+//!
+//! ```text
+//!              draw                        jobs: read, fit, write
+//!   panels <--------- State <------- app ------------------------> worker (threads)
+//!     |                 ^             ^                               |
+//!     +--- intents -----+             +----------- events ------------+
+//! ```
+//!
+//! - [`state`] holds what is loaded, chosen and fitted, and changes by [`intent::Intent`] only. It
+//!   knows no widget and no thread, so that it can be tested by itself. What follows from it (the
+//!   curves, E, the reflectance) is worked out once a change, in [`state::shown`].
+//! - [`panels`] draw the state and answer with intents, a panel a file; [`plot`] is the one in the
+//!   middle.
+//! - [`worker`] reads, fits and writes on threads of its own, calls `brdf_fit` for it, and answers
+//!   with events.
+//! - [`app`] is the round trip of a frame: events in, intents applied, panels drawn, jobs out.
+//!
+//! No formula of the model stands here: curves, errors and reflectances come from `brdf_fit` and
+//! `brdf_core`, the figures that are written come from `brdf_fit::plot`.
+
+pub mod app;
+pub mod dialogs;
+pub mod intent;
+pub mod panels;
+pub mod plot;
+pub mod raster;
+pub mod screenshot;
+pub mod shortcuts;
+pub mod state;
+pub mod worker;
+
+pub use app::Viewer;

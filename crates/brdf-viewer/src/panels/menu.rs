@@ -1,0 +1,77 @@
+//! The menus, with the key of each command.
+
+use egui::{Button, MenuBar, Panel, Ui};
+
+use crate::intent::{Command, Intent};
+use crate::shortcuts::MENUS;
+use crate::state::{State, built_in};
+
+/// Draws the menus.
+pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    Panel::top("menu").show(ui, |ui| {
+        MenuBar::new().ui(ui, |ui| {
+            for (i, menu) in MENUS.iter().enumerate() {
+                ui.menu_button(menu.title, |ui| {
+                    for entry in menu.entries {
+                        match entry {
+                            Some(command) => show_command(ui, state, *command, intents),
+                            None => {
+                                ui.separator();
+                            }
+                        }
+                        if *entry == Some(Command::OpenPath) {
+                            show_recent(ui, state, intents);
+                        }
+                    }
+                });
+                if i == 0 {
+                    ui.menu_button("Built-in", |ui| show_built_in(ui, intents));
+                }
+            }
+        });
+    });
+}
+
+fn show_command(ui: &mut Ui, state: &State, command: Command, intents: &mut Vec<Intent>) {
+    let mut button = Button::new(command.name());
+    if let Some(shortcut) = command.shortcut() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    if let Some(on) = state.is_on(command) {
+        button = button.selected(on);
+    }
+    if ui.add_enabled(state.is_enabled(command), button).clicked() {
+        intents.push(Intent::Do(command));
+        ui.close();
+    }
+}
+
+fn show_recent(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    ui.add_enabled_ui(!state.recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in &state.recent {
+                if ui.button(path.display().to_string()).clicked() {
+                    intents.push(Intent::Open(vec![path.clone()]));
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+fn show_built_in(ui: &mut Ui, intents: &mut Vec<Intent>) {
+    let mut measured = None;
+    for (i, entry) in built_in::entries().into_iter().enumerate() {
+        if measured.replace(entry.measured) != Some(entry.measured) {
+            ui.weak(if entry.measured {
+                "Measured"
+            } else {
+                "Theory with the parameters of the paper"
+            });
+        }
+        if ui.button(entry.name).clicked() {
+            intents.push(Intent::OpenBuiltIn(i));
+            ui.close();
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! What the user is told, above the plot, until it is taken away.
+
+use egui::{Color32, Frame, Panel, RichText, ScrollArea, Ui};
+
+use crate::intent::Intent;
+use crate::state::State;
+use crate::state::interface::{Message, Severity};
+
+/// Messages take no more than this of the height, in points.
+const MOST_HEIGHT: f32 = 110.0;
+
+/// Draws the messages, the latest first; nothing where there are none.
+pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    if state.messages.is_empty() {
+        return;
+    }
+    Panel::top("messages").resizable(false).show(ui, |ui| {
+        ScrollArea::vertical().max_height(MOST_HEIGHT).show(ui, |ui| {
+            for (i, message) in state.messages.iter().enumerate().rev() {
+                if show_message(ui, message) {
+                    intents.push(Intent::Dismiss(i));
+                }
+            }
+        });
+    });
+}
+
+/// Draws one; whether it shall go.
+fn show_message(ui: &mut Ui, message: &Message) -> bool {
+    let (title, colour) = match message.severity {
+        Severity::Error => ("Error", ui.visuals().error_fg_color),
+        Severity::Note => ("Note", ui.visuals().warn_fg_color),
+    };
+    let frame = Frame::group(ui.style()).stroke((1.0, colour)).fill(Color32::TRANSPARENT);
+    let shown = frame.show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            let gone = ui.button("Dismiss").clicked();
+            ui.label(RichText::new(title).color(colour).strong());
+            ui.add(egui::Label::new(&message.text).wrap());
+            gone
+        })
+    });
+    shown.inner.inner
+}

@@ -1,0 +1,275 @@
+//! f_r over the signed view angle: all incidences in one plot, or one plot for each, with the
+//! residuals below.
+
+use brdf_fit::plot::{Layout, Reading, View, value_range};
+use brdf_fit::read::Side;
+use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
+use egui_plot::{AxisHints, Plot, PlotResponse};
+
+use super::axis::{Axis, degrees};
+use super::hover::{Plots, read_out};
+use super::items::{self, Drawing};
+use super::{Drawn, title};
+use crate::state::State;
+
+/// The part of the height that the residuals take.
+const RESIDUALS: f32 = 0.3;
+
+/// The axes are at least so wide that plots above each other line up, in points.
+const AXIS_WIDTH: f32 = 62.0;
+
+/// Numbers at the axis of view angles are at least so far apart, in points.
+const LEAST_APART: f64 = 34.0;
+
+/// A panel is not lower than this, in points.
+const LEAST_PANEL: f32 = 120.0;
+
+/// All incidences in one plot.
+pub fn together(ui: &mut Ui, plots: &Plots) {
+    let all: Vec<&Drawn> = plots.drawn.iter().collect();
+    let group = Some((Id::unique("theta"), [true, false]));
+    pair(ui, plots, &all, ["theory", "residuals"], ui.available_size(), group);
+}
+
+/// Theory and experiment, and where they are asked for the residuals below.
+fn pair(
+    ui: &mut Ui,
+    plots: &Plots,
+    drawn: &[&Drawn],
+    [theory_name, residual_name]: [&str; 2],
+    size: Vec2,
+    group: Group,
+) {
+    let state = plots.state;
+    let below = if state.view.residuals { size.y * RESIDUALS } else { 0.0 };
+    let place = Place {
+        state,
+        name: theory_name,
+        size: vec2(size.x, size.y - below),
+        group,
+    };
+    theory(ui, plots, drawn, &place);
+    if state.view.residuals {
+        let gap = ui.spacing().item_spacing.y;
+        let place = Place {
+            name: residual_name,
+            size: vec2(size.x, (below - gap).max(1.0)),
+            ..place
+        };
+        residual(ui, plots, drawn, &place);
+    }
+}
+
+/// One plot for each incidence, with the same axes.
+pub fn panels(ui: &mut Ui, plots: &Plots) {
+    let panels = by_incidence(plots.drawn);
+    let whole = ui.available_size();
+    let columns = columns(panels.len(), whole);
+    let rows = panels.len().div_ceil(columns);
+    let gap = ui.spacing().item_spacing;
+    let least = LEAST_PANEL * if plots.state.view.residuals { 1.5 } else { 1.0 };
+    let size = vec2(
+        (whole.x - gap.x * (columns - 1) as f32) / columns as f32,
+        ((whole.y - gap.y * rows as f32) / rows as f32).max(least),
+    );
+    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        for (row, chunk) in panels.chunks(columns).enumerate() {
+            ui.horizontal(|ui| {
+                for (column, panel) in chunk.iter().enumerate() {
+                    let place = row * columns + column;
+                    ui.allocate_ui(size, |ui| show_panel(ui, plots, panel, place, size));
+                }
+            });
+        }
+    });
+}
+
+fn show_panel(ui: &mut Ui, plots: &Plots, panel: &[&Drawn], place: usize, size: Vec2) {
+    ui.vertical(|ui| {
+        ui.spacing_mut().item_spacing.y = 0.0;
+        // Panels with residuals share the view angle only: the two kinds have other heights.
+        let group = Some((Id::unique("panels"), [true, !plots.state.view.residuals]));
+        let names = [format!("theory {place}"), format!("residuals {place}")];
+        pair(ui, plots, panel, [&names[0], &names[1]], size, group);
+    });
+}
+
+/// The curves of each incidence, of all samples together.
+fn by_incidence<'a>(drawn: &'a [Drawn<'a>]) -> Vec<Vec<&'a Drawn<'a>>> {
+    let mut all: Vec<&Drawn> = drawn.iter().collect();
+    all.sort_by(|a, b| a.curve.psi.total_cmp(&b.curve.psi));
+    let same = |a: &&Drawn, b: &&Drawn| (b.curve.psi - a.curve.psi).to_degrees() < 0.05;
+    all.chunk_by(same).map(<[_]>::to_vec).collect()
+}
+
+/// So many columns that the panels are about half again as wide as high.
+fn columns(count: usize, size: Vec2) -> usize {
+    let columns = (count as f32 * size.x / (1.5 * size.y.max(1.0))).sqrt();
+    (columns.round() as usize).clamp(1, count.clamp(1, 6))
+}
+
+type Group = Option<(Id, [bool; 2])>;
+
+/// Where a plot is, and what it shares with others.
+struct Place<'a> {
+    state: &'a State,
+    name: &'a str,
+    size: Vec2,
+    group: Group,
+}
+
+/// A plot that is narrower has no names at its axes, in points.
+const NARROW: f32 = 400.0;
+
+/// A plot over the view angle. `lowest` of those above each other has the name of the axis.
+fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> Plot<'a> {
+    let narrow = place.size.x < NARROW;
+    let width = f64::from(place.size.x);
+    let mut x = AxisHints::new_x()
+        .formatter(move |mark, range| {
+            let apart = mark.step_size / (range.end() - range.start()) * width;
+            if apart < LEAST_APART {
+                return String::new();
+            }
+            Axis::Linear.label(mark, range)
+        })
+        .label_spacing(Rangef::new(8.0, 12.0));
+    let mut y = AxisHints::new_y()
+        .formatter(move |mark, range| axis.label(mark, range))
+        .min_thickness(if narrow { 36.0 } else { AXIS_WIDTH });
+    if !narrow {
+        y = y.label(value);
+        if lowest {
+            x = x.label(theta_name(&place.state.view));
+        }
+    }
+    let mut plot = Plot::new(place.name)
+        .id(super::id(place.state, place.name))
+        .width(place.size.x)
+        .height(place.size.y)
+        .include_x(-90.0)
+        .include_x(90.0)
+        .set_margin_fraction(Vec2::ZERO)
+        .x_grid_spacer(degrees)
+        .y_grid_spacer(move |input| axis.grid(input))
+        .custom_x_axes(vec![x])
+        .custom_y_axes(vec![y])
+        .show_crosshair(false)
+        .label_formatter(|_| None);
+    if let Some((id, axes)) = place.group {
+        plot = plot.link_axis(id, axes);
+    }
+    plot
+}
+
+/// The name of the axis of view angles.
+fn theta_name(view: &View) -> String {
+    if view.azimuth == 0.0 {
+        let side = match view.theta_positive {
+            Side::Source => "source",
+            Side::Forward => "forward",
+        };
+        return format!("view angle theta / deg ({side} side positive)");
+    }
+    let azimuth = match view.theta_positive {
+        Side::Source => view.azimuth,
+        Side::Forward => view.azimuth + std::f64::consts::PI,
+    };
+    let azimuth = crate::panels::degrees(azimuth);
+    format!("view angle theta / deg (positive towards phi = {azimuth})")
+}
+
+fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
+    let (state, axis) = (place.state, plots.axis);
+    // All panels have the same axis: that of all curves.
+    let all = plots.drawn.iter().map(|drawn| drawn.curve);
+    let range = value_range(all, state.view.scale).unwrap_or((0.001, 1.0));
+    let end = |value: f64| axis.place(value).unwrap_or(0.0);
+    let lowest = !state.view.residuals;
+    let plot = over_theta(place, axis, state.view.quantity.axis_name(), lowest)
+        .include_y(end(range.0))
+        .include_y(end(range.1));
+    let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
+        for (i, one) in drawn.iter().enumerate() {
+            let (curve, colour) = (one.curve, one.colour);
+            plot_ui.add(Drawing::new(format!("curve {i}"), move |transform, shapes| {
+                if let Some(mirror) = state.view.mirror_deg(curve.psi) {
+                    items::upright(transform, mirror, colour, shapes);
+                }
+                let faint = colour.gamma_multiply(0.25);
+                items::band(transform, axis, &curve.theory, faint, shapes);
+                let value = |reading: &Reading| reading.value;
+                items::readings(transform, axis, &curve.readings, value, one.mark, colour, shapes);
+                items::theory(transform, axis, &curve.theory, colour, shapes);
+            }));
+        }
+    });
+    let at = |reading: &Reading| Some([reading.theta_deg, axis.place(reading.value)?]);
+    read_out(&response, drawn, at);
+    if plots.state.view.layout == Layout::Panels {
+        name_panel(ui, &response, drawn);
+    }
+    describe(&response, "BRDF plot", drawn);
+}
+
+fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
+    let all = plots.drawn.iter().flat_map(|drawn| &drawn.curve.readings);
+    let largest = all.map(|reading| reading.residual().abs()).fold(0.0, f64::max);
+    let reach = if largest > 0.0 { 1.1 * largest } else { 1.0 };
+    let plot = over_theta(place, Axis::Linear, "measured - theory", true)
+        .include_y(-reach)
+        .include_y(reach);
+    let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
+        for (i, one) in drawn.iter().enumerate() {
+            plot_ui.add(Drawing::new(format!("residuals {i}"), move |transform, shapes| {
+                let readings = &one.curve.readings;
+                let value = Reading::residual;
+                let (mark, colour) = (one.mark, one.colour);
+                items::readings(transform, Axis::Linear, readings, value, mark, colour, shapes);
+            }));
+        }
+    });
+    read_out(&response, drawn, |reading| {
+        Some([reading.theta_deg, reading.residual()])
+    });
+    describe(&response, "Residual plot", drawn);
+}
+
+/// The plot with everything in view again, where the user asked for it since the last frame.
+pub(super) fn reset_on_demand<'a>(
+    ui: &Ui,
+    state: &State,
+    name: &str,
+    plot: Plot<'a>,
+) -> Plot<'a> {
+    let key = super::id(state, name).with("resets");
+    let seen = ui.data(|data| data.get_temp::<u64>(key)).unwrap_or(0);
+    if seen == state.zoom_resets {
+        return plot;
+    }
+    ui.data_mut(|data| data.insert_temp(key, state.zoom_resets));
+    plot.reset()
+}
+
+/// The incidence of a panel, in its corner.
+fn name_panel(ui: &Ui, response: &PlotResponse<()>, drawn: &[&Drawn]) {
+    let Some(first) = drawn.first() else {
+        return;
+    };
+    let corner = response.transform.frame().left_top() + vec2(5.0, 3.0);
+    let font = TextStyle::Body.resolve(ui.style());
+    let colour = ui.visuals().strong_text_color();
+    ui.painter()
+        .text(corner, Align2::LEFT_TOP, title(first.curve.psi), font, colour);
+}
+
+/// Says in words what the plot shows, for those who do not see it.
+pub fn describe(response: &PlotResponse<()>, name: &str, drawn: &[&Drawn]) {
+    let readings: usize = drawn.iter().map(|one| one.curve.readings.len()).sum();
+    let words = format!("{} curves, {readings} readings", drawn.len());
+    response.response.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::Role::Image, true, name)
+    });
+    let ctx = &response.response.ctx;
+    ctx.accesskit_node_builder(response.response.id, |node| node.set_description(words));
+}

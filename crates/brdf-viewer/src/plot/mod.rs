@@ -1,0 +1,83 @@
+//! The middle of the window: theory against experiment.
+
+pub mod axis;
+pub mod cartesian;
+pub mod hover;
+pub mod items;
+pub mod polar;
+pub mod toolbar;
+
+use brdf_fit::plot::{Curve, Layout, MarkShape, mark};
+use egui::{CentralPanel, Color32, Id, Ui};
+
+use crate::intent::Intent;
+use crate::panels::{degrees, theme};
+use crate::state::State;
+
+/// A curve with how it looks.
+pub struct Drawn<'a> {
+    /// The curve.
+    pub curve: &'a Curve,
+    /// The name of its sample.
+    pub sample: &'a str,
+    /// Its colour.
+    pub colour: Color32,
+    /// The mark of its readings.
+    pub mark: MarkShape,
+}
+
+/// Draws the plot.
+pub fn show(ui: &mut Ui, state: &mut State, intents: &mut Vec<Intent>) {
+    CentralPanel::default().show(ui, |ui| {
+        toolbar::show(ui, state, intents);
+        // A column of readings is two points wide; steps keep a drag of a border from thinning anew
+        // in every frame.
+        let columns = (ui.available_width() / 128.0).ceil() as usize * 64;
+        state.columns = columns.clamp(64, 1024);
+        if state.visible().next().is_none() {
+            ui.centered_and_justified(|ui| {
+                ui.label(if state.samples.is_empty() {
+                    "Drop a scan here, or open one: File > Open, or Built-in."
+                } else {
+                    "All samples are hidden."
+                });
+            });
+            return;
+        }
+        let all = drawn(ui, state);
+        let plot = hover::Plots::new(state, &all);
+        match state.view.layout {
+            Layout::Together => cartesian::together(ui, &plot),
+            Layout::Panels => cartesian::panels(ui, &plot),
+            Layout::Polar => polar::show(ui, &plot),
+        }
+    });
+}
+
+/// The curves of all samples that are shown.
+fn drawn<'a>(ui: &Ui, state: &'a State) -> Vec<Drawn<'a>> {
+    let ground = theme::ground(ui.ctx());
+    let mut all = Vec::new();
+    for sample in state.visible() {
+        let curves = state.shown.curves(sample.scan_id());
+        for (i, curve) in curves.iter().enumerate() {
+            all.push(Drawn {
+                curve,
+                sample: &sample.name,
+                colour: theme::colour(sample.family, i, curves.len(), ground),
+                mark: mark(sample.family, i),
+            });
+        }
+    }
+    all
+}
+
+/// The id of a plot. Each way of looking has its own, with its own zoom.
+pub fn id(state: &State, name: &str) -> Id {
+    Id::unique((name, state.view.scale as u8, state.view.quantity as u8))
+}
+
+/// The title of an incidence.
+pub fn title(psi: f64) -> String {
+    format!("psi = {}", degrees(psi))
+}

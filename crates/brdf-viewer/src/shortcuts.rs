@@ -1,0 +1,176 @@
+//! The commands with their names and keys, in one place for the menus and the keyboard.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::intent::{Command, Export, Picture};
+
+const NONE: Modifiers = Modifiers::NONE;
+const COMMAND: Modifiers = Modifiers::COMMAND;
+const SHIFTED: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// A menu with its entries; `None` is a line between them.
+pub struct Menu {
+    /// Its title.
+    pub title: &'static str,
+    /// Its entries.
+    pub entries: &'static [Option<Command>],
+}
+
+/// The menus. That of the built-in samples stands between the first and the second.
+pub const MENUS: [Menu; 5] = [
+    Menu {
+        title: "File",
+        entries: &[
+            Some(Command::Open),
+            Some(Command::OpenPath),
+            Some(Command::Close),
+            Some(Command::CloseAll),
+            None,
+            Some(Command::Export(Export::Figure(Picture::Svg))),
+            Some(Command::Export(Export::Figure(Picture::Png))),
+            Some(Command::Export(Export::Curves)),
+            Some(Command::Export(Export::Fit)),
+            None,
+            Some(Command::Quit),
+        ],
+    },
+    Menu {
+        title: "Edit",
+        entries: &[
+            Some(Command::Undo),
+            Some(Command::Redo),
+            Some(Command::ResetAll),
+            None,
+            Some(Command::CopyParameters),
+        ],
+    },
+    Menu {
+        title: "View",
+        entries: &[
+            Some(Command::Logarithmic),
+            Some(Command::TimesCosine),
+            Some(Command::Residuals),
+            None,
+            Some(Command::Together),
+            Some(Command::Panels),
+            Some(Command::Polar),
+            None,
+            Some(Command::ResetZoom),
+            None,
+            Some(Command::Samples),
+            Some(Command::Parameters),
+            Some(Command::Results),
+            Some(Command::Dark),
+        ],
+    },
+    Menu {
+        title: "Fit",
+        entries: &[
+            Some(Command::Fit),
+            Some(Command::FitAll),
+            Some(Command::Cancel),
+        ],
+    },
+    Menu {
+        title: "Help",
+        entries: &[Some(Command::About)],
+    },
+];
+
+impl Command {
+    /// Its name in the menu.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Open => "Open...",
+            Self::OpenPath => "Open path...",
+            Self::Close => "Close sample",
+            Self::CloseAll => "Close all samples",
+            Self::Export(Export::Figure(Picture::Svg)) => "Export figure as SVG...",
+            Self::Export(Export::Figure(Picture::Png)) => "Export figure as PNG...",
+            Self::Export(Export::Curves) => "Export theory and readings as CSV...",
+            Self::Export(Export::Fit) => "Save fit as JSON...",
+            Self::CopyParameters => "Copy parameter table",
+            Self::Quit => "Quit",
+            Self::Undo => "Undo",
+            Self::Redo => "Redo",
+            Self::ResetAll => "Reset parameters to the fit",
+            Self::Fit => "Fit in both stages",
+            Self::FitAll => "Fit all samples and wavelengths",
+            Self::Cancel => "Cancel the fit",
+            Self::Logarithmic => "Logarithmic BRDF axis",
+            Self::TimesCosine => "BRDF times cos theta",
+            Self::Residuals => "Residuals below",
+            Self::Together => "All incidences in one plot",
+            Self::Panels => "One plot for each incidence",
+            Self::Polar => "Polar form",
+            Self::ResetZoom => "Reset zoom",
+            Self::Samples => "Samples panel",
+            Self::Parameters => "Parameters panel",
+            Self::Results => "Results panel",
+            Self::Dark => "Dark",
+            Self::About => "About and keys",
+        }
+    }
+
+    /// Its key.
+    pub fn shortcut(self) -> Option<KeyboardShortcut> {
+        let (modifiers, key) = match self {
+            Self::Open => (COMMAND, Key::O),
+            Self::OpenPath => (SHIFTED, Key::O),
+            Self::Close => (COMMAND, Key::W),
+            Self::CloseAll => (SHIFTED, Key::W),
+            Self::Export(Export::Figure(Picture::Svg)) => (COMMAND, Key::E),
+            Self::Export(Export::Figure(Picture::Png)) => (SHIFTED, Key::E),
+            Self::Export(Export::Curves) => (SHIFTED, Key::S),
+            Self::Export(Export::Fit) => (COMMAND, Key::S),
+            Self::CopyParameters => (SHIFTED, Key::C),
+            Self::Quit => (COMMAND, Key::Q),
+            Self::Undo => (COMMAND, Key::Z),
+            Self::Redo => (SHIFTED, Key::Z),
+            Self::ResetAll => (COMMAND, Key::Backspace),
+            Self::Fit => (NONE, Key::F5),
+            Self::FitAll => (Modifiers::SHIFT, Key::F5),
+            Self::Cancel => (NONE, Key::Escape),
+            Self::Logarithmic => (COMMAND, Key::L),
+            Self::TimesCosine => (COMMAND, Key::K),
+            Self::Residuals => (COMMAND, Key::D),
+            Self::Together => (COMMAND, Key::Num1),
+            Self::Panels => (COMMAND, Key::Num2),
+            Self::Polar => (COMMAND, Key::Num3),
+            Self::ResetZoom => (NONE, Key::Home),
+            Self::Samples => (NONE, Key::F6),
+            Self::Parameters => (NONE, Key::F7),
+            Self::Results => (NONE, Key::F8),
+            Self::Dark => (NONE, Key::F9),
+            Self::About => (NONE, Key::F1),
+        };
+        Some(KeyboardShortcut::new(modifiers, key))
+    }
+
+    /// Whether its key means something else while a text is edited.
+    fn belongs_to_text(self) -> bool {
+        matches!(
+            self,
+            Self::Undo | Self::Redo | Self::ResetAll | Self::Cancel | Self::ResetZoom
+        )
+    }
+}
+
+/// The commands whose keys were pressed.
+pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
+    let editing = ctx.egui_wants_keyboard_input();
+    // A key with more modifiers comes before the same with fewer.
+    let mut all: Vec<(Command, KeyboardShortcut)> = MENUS
+        .iter()
+        .flat_map(|menu| menu.entries.iter().copied().flatten())
+        .filter_map(|command| Some((command, command.shortcut()?)))
+        .filter(|(command, _)| !(editing && command.belongs_to_text()))
+        .collect();
+    all.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);
+    ctx.input_mut(|input| {
+        all.into_iter()
+            .filter(|(_, shortcut)| input.consume_shortcut(shortcut))
+            .map(|(command, _)| command)
+            .collect()
+    })
+}

@@ -1,0 +1,220 @@
+//! What the tests of the window share: a window that nobody sees, and ways to read back what it
+//! shows.
+
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use brdf_viewer::Viewer;
+use brdf_viewer::dialogs::Dialogs;
+use brdf_viewer::intent::Export;
+use brdf_viewer::raster::Rasteriser;
+use brdf_viewer::state::saved::Settings;
+use brdf_viewer::worker::Events;
+use egui::accesskit::Role;
+use egui::epaint::{ColorMode, Shape};
+use egui::{Color32, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use egui_plot::{PlotMemory, PlotPoint};
+
+/// A window of the tests.
+pub type Window = Harness<'static, Viewer>;
+
+/// The processor draws, not a graphics card.
+#[derive(Default)]
+struct OnProcessor(Rasteriser);
+
+impl egui_kittest::TestRenderer for OnProcessor {
+    fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
+        self.0.update(delta);
+    }
+
+    fn render(
+        &mut self,
+        ctx: &egui::Context,
+        output: &egui::FullOutput,
+    ) -> Result<image::RgbaImage, String> {
+        Ok(self.0.draw(ctx, output))
+    }
+}
+
+/// A system without dialogs for files.
+pub struct NoDialogs;
+
+impl Dialogs for NoDialogs {
+    fn available(&self) -> bool {
+        false
+    }
+    fn open(&self, _: Events) {}
+    fn export(&self, _: Export, _: &Path, _: Events) {}
+}
+
+/// A window with what `dialogs` and `settings` say.
+pub fn window_with(
+    size: [f32; 2],
+    dialogs: impl Dialogs + 'static,
+    settings: Settings,
+) -> Window {
+    let mut window = Harness::builder()
+        .with_size(size)
+        .with_theme(egui::Theme::Light)
+        .with_max_steps(20)
+        .renderer(OnProcessor::default())
+        .build_eframe(|creation| {
+            let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(dialogs), settings);
+            viewer.state.interface.dark = Some(false);
+            viewer
+        });
+    settle(&mut window);
+    window
+}
+
+/// An empty window of 1280 x 800.
+pub fn empty() -> Window {
+    window_with([1280.0, 800.0], NoDialogs, Settings::unkept())
+}
+
+/// A window with the first of the built-in samples: Z307, measured.
+pub fn with_z307() -> Window {
+    let mut window = empty();
+    open_built_in(&mut window, "z307_on_aluminium.csv");
+    window
+}
+
+/// Opens an entry of the built-in menu by the mouse.
+pub fn open_built_in(window: &mut Window, name: &str) {
+    window.get_by_label("Built-in").click();
+    window.run();
+    window.get_by_label(name).click();
+    settle(window);
+}
+
+/// Frames until all work is done.
+pub fn settle(window: &mut Window) {
+    let started = Instant::now();
+    loop {
+        window.step();
+        if !window.state().is_busy() {
+            break;
+        }
+        assert!(started.elapsed() < Duration::from_secs(60), "the work does not end");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    window.run();
+}
+
+/// Clicks on what has this label.
+pub fn click(window: &mut Window, label: &str) {
+    window.get_by_label(label).click();
+    settle(window);
+}
+
+/// Clicks on a control of a kind.
+pub fn click_role(window: &mut Window, role: Role, label: &str) {
+    window.get_by_role_and_label(role, label).click();
+    settle(window);
+}
+
+/// Chooses an entry of a menu.
+pub fn menu(window: &mut Window, title: &str, entry: &str) {
+    window.get_by_role_and_label(Role::Button, title).click();
+    window.run();
+    let found = window.get_by(|node| {
+        node.label().is_some_and(|label| label == entry || label.starts_with(&format!("{entry} ")))
+            && node.role() == Role::Button
+    });
+    found.click();
+    settle(window);
+}
+
+/// Types into the number box of a parameter.
+pub fn type_number(window: &mut Window, label: &str, text: &str) {
+    window.get_by_role_and_label(Role::SpinButton, label).click();
+    window.run();
+    let focused = window.get_by(|node| node.is_focused());
+    focused.type_text(text);
+    window.run();
+    window.key_press(egui::Key::Enter);
+    settle(window);
+}
+
+/// A dropped file that has no place of its own.
+#[derive(Debug)]
+struct InMemory(PathBuf, Vec<u8>);
+
+impl egui::DroppedFile for InMemory {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        Ok(self.1.clone())
+    }
+}
+
+/// Drops a file onto the window.
+pub fn drop_file(window: &mut Window, name: &str, text: &str) {
+    let file = InMemory(PathBuf::from(name), text.as_bytes().to_vec());
+    window.input_mut().dropped_files.push(Arc::new(file));
+    settle(window);
+}
+
+/// The painted lines of a colour, on the screen.
+pub fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
+    fn collect(shape: &Shape, colour: Color32, lines: &mut Vec<Vec<Pos2>>) {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, colour, lines)),
+            Shape::Path(path) if path.stroke.color == ColorMode::Solid(colour) => {
+                lines.push(path.points.clone());
+            }
+            _ => {}
+        }
+    }
+    let mut lines = Vec::new();
+    for clipped in &window.output().shapes {
+        collect(&clipped.shape, colour, &mut lines);
+    }
+    lines
+}
+
+/// The longest painted line of a colour in the coordinates of a plot.
+pub fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec<PlotPoint> {
+    let id = brdf_viewer::plot::id(&window.state().state, plot);
+    let memory = PlotMemory::load(&window.ctx, id).expect("no such plot");
+    let transform = memory.transform();
+    let lines = painted_lines(window, colour);
+    let longest = lines.into_iter().max_by_key(Vec::len).unwrap_or_default();
+    longest.into_iter().map(|at| transform.value_from_position(at)).collect()
+}
+
+/// How many marks of a colour are painted: filled circles and polygons.
+pub fn painted_marks(window: &Window, colour: Color32) -> usize {
+    fn count(shape: &Shape, colour: Color32) -> usize {
+        match shape {
+            Shape::Vec(shapes) => shapes.iter().map(|s| count(s, colour)).sum(),
+            Shape::Circle(circle) => usize::from(circle.fill == colour),
+            Shape::Rect(rect) => usize::from(rect.fill == colour),
+            Shape::Path(path) => usize::from(path.fill == colour),
+            _ => 0,
+        }
+    }
+    let shapes = window.output().shapes.iter();
+    shapes.map(|clipped| count(&clipped.shape, colour)).sum()
+}
+
+/// The colour of an incidence of the only sample.
+pub fn colour_of(window: &Window, i: usize) -> Color32 {
+    let state = &window.state().state;
+    let sample = state.active_sample().unwrap();
+    let shown = sample.scan().shown_psi().len();
+    let [r, g, b] = brdf_fit::plot::colour(sample.family, i, shown, brdf_fit::plot::Ground::Light);
+    Color32::from_rgb(r, g, b)
+}
+
+/// The Z307 sample of the project as text.
+pub fn z307() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/measured/z307_on_aluminium.csv");
+    std::fs::read_to_string(path).unwrap()
+}

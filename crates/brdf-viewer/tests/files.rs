@@ -1,0 +1,342 @@
+//! Opening and writing: the path box, dropped files, dialogs, exports, the recent files, and what is
+//! kept between two starts.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use brdf_fit::Measurements;
+use brdf_fit::report::Document;
+use brdf_viewer::dialogs::Dialogs;
+use brdf_viewer::intent::Export;
+use brdf_viewer::state::saved::Settings;
+use brdf_viewer::worker::{Event, Events};
+use common::{
+    NoDialogs, Window, click, click_role, drop_file, empty, menu, settle, type_number, window_with,
+    with_z307, z307,
+};
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+
+/// Opens a path by the box.
+fn open_path(window: &mut Window, path: &Path) {
+    menu(window, "File", "Open path...");
+    enter_path(window, path);
+    click_role(window, Role::Button, "Open");
+}
+
+/// Puts another path into the box of the dialog.
+fn enter_path(window: &mut Window, path: &Path) {
+    window.get_by_role_and_label(Role::TextInput, "Path of the file").focus();
+    window.run();
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.run();
+    let text = path.display().to_string();
+    window.get_by_role_and_label(Role::TextInput, "Path of the file").type_text(&text);
+    window.run();
+}
+
+fn export(window: &mut Window, entry: &str, path: &Path) {
+    menu(window, "File", entry);
+    enter_path(window, path);
+    click_role(window, Role::Button, "Write");
+    let errors = window.state().state.errors();
+    assert!(errors.is_empty(), "{errors:?}");
+    assert!(path.exists(), "{}", path.display());
+}
+
+fn names(window: &Window) -> Vec<String> {
+    window.state().state.samples.iter().map(|sample| sample.name.clone()).collect()
+}
+
+#[test]
+fn a_path_is_opened_and_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("paint.csv");
+    std::fs::write(&path, z307()).unwrap();
+    let mut window = empty();
+    open_path(&mut window, &path);
+    assert_eq!(names(&window), ["paint"]);
+    assert_eq!(window.state().state.samples[0].scans.len(), 2);
+    assert_eq!(window.state().state.recent, [path.clone()]);
+    menu(&mut window, "File", "Close all samples");
+    assert!(names(&window).is_empty());
+    window.get_by_role_and_label(Role::Button, "File").click();
+    window.run();
+    window.get_by_label_contains("Open recent").hover();
+    window.run();
+    window.get_by_label_contains("Open recent").click();
+    window.run();
+    window.get_by_label(&path.display().to_string()).click();
+    settle(&mut window);
+    assert_eq!(names(&window), ["paint"]);
+}
+
+#[test]
+fn a_bad_file_is_told_with_its_line_and_value_and_the_data_stay() {
+    let mut window = with_z307();
+    let before = names(&window);
+    drop_file(&mut window, "bad.csv", "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n95,0,0.2\n");
+    assert_eq!(names(&window), before);
+    let error = &window.state().state.errors()[0];
+    for part in ["bad.csv", "line 3", "psi_deg", "95"] {
+        assert!(error.contains(part), "{error}");
+    }
+    assert!(window.query_by_label(error.as_str()).is_some());
+    click(&mut window, "Dismiss");
+    assert!(window.state().state.messages.is_empty());
+    open_path(&mut window, Path::new("/no/such/file.csv"));
+    assert!(window.state().state.errors()[0].contains("/no/such/file.csv"));
+    open_path(&mut window, Path::new("/no/such/fit.json"));
+    assert!(window.state().state.errors()[1].contains("/no/such/fit.json"));
+    assert_eq!(names(&window), before);
+}
+
+#[test]
+fn a_good_file_is_dropped() {
+    let mut window = empty();
+    drop_file(&mut window, "a.csv", &z307());
+    assert_eq!(names(&window), ["a"]);
+    assert!(window.query_by_label_contains("112 readings").is_some());
+}
+
+/// Dialogs that answer by themselves.
+struct Answers {
+    open: PathBuf,
+    write: PathBuf,
+}
+
+impl Dialogs for Answers {
+    fn available(&self) -> bool {
+        true
+    }
+    fn open(&self, events: Events) {
+        events.send(Event::Chosen(vec![self.open.clone()]));
+    }
+    fn export(&self, what: Export, suggested: &Path, events: Events) {
+        assert!(suggested.extension().is_some());
+        events.send(Event::ChosenExport(what, self.write.clone()));
+    }
+}
+
+#[test]
+fn the_dialogs_of_the_system_are_used_where_there_are_any() {
+    let folder = tempfile::tempdir().unwrap();
+    let open = folder.path().join("in.csv");
+    std::fs::write(&open, z307()).unwrap();
+    let write = folder.path().join("out.csv");
+    let answers = Answers {
+        open: open.clone(),
+        write: write.clone(),
+    };
+    let mut window = window_with([1280.0, 800.0], answers, Settings::unkept());
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::O);
+    settle(&mut window);
+    settle(&mut window);
+    assert_eq!(names(&window), ["in"]);
+    menu(&mut window, "File", "Export theory and readings as CSV...");
+    settle(&mut window);
+    wait_for(&mut window, &write);
+    // The dialog can be asked for from the box as well.
+    menu(&mut window, "File", "Open path...");
+    click(&mut window, "Browse...");
+    settle(&mut window);
+    assert_eq!(names(&window), ["in", "in"]);
+}
+
+fn wait_for(window: &mut Window, path: &Path) {
+    for _ in 0..2000 {
+        window.step();
+        if path.exists() {
+            settle(window);
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    panic!("{} was not written", path.display());
+}
+
+#[test]
+fn the_figure_is_written_as_svg_and_png() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = with_z307();
+    click(&mut window, "Both stages");
+    let (svg, png) = (folder.path().join("a.svg"), folder.path().join("a.png"));
+    for layout in ["Together", "Panels", "Polar"] {
+        click(&mut window, layout);
+        write(&mut window, "Export figure as SVG...", &svg);
+        let text = std::fs::read_to_string(&svg).unwrap();
+        assert!(text.contains("<svg") && text.contains("psi = 70 deg"), "{layout}");
+        write(&mut window, "Export figure as PNG...", &png);
+        let image = image::open(&png).unwrap();
+        assert!(image.width() >= 2000, "{}", image.width());
+        let pixels = image.to_rgb8();
+        assert!(pixels.pixels().filter(|p| p.0.iter().all(|c| *c < 120)).count() > 1000);
+    }
+}
+
+/// Writes, and waits for the file, which may have been there before.
+fn write(window: &mut Window, entry: &str, path: &Path) {
+    let _ = std::fs::remove_file(path);
+    menu(window, "File", entry);
+    enter_path(window, path);
+    click_role(window, Role::Button, "Write");
+    wait_for(window, path);
+}
+
+#[test]
+fn theory_and_readings_are_written_for_the_parameters_as_they_are_turned() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curves.csv");
+    let mut window = with_z307();
+    type_number(&mut window, "k1", "0.25");
+    write(&mut window, "Export theory and readings as CSV...", &path);
+    let brdf = window.state().state.active_sample().unwrap().scan().knobs.brdf().unwrap();
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).unwrap();
+    let columns = reader.headers().unwrap().clone();
+    let column = |name: &str| columns.iter().position(|c| c == name).unwrap();
+    let (psi, theta) = (column("psi_deg"), column("theta_deg"));
+    let (theory, measured) = (column("theory_per_sr"), column("measured_per_sr"));
+    let mut rows = 0;
+    for row in reader.records().map(Result::unwrap) {
+        let value = |i: usize| row[i].parse::<f64>().unwrap();
+        let at = brdf_core::Geometry::in_plane(value(psi).to_radians(), value(theta).to_radians());
+        let expected = brdf.value(&at.unwrap());
+        assert!((value(theory) - expected).abs() < 1e-9 * expected);
+        rows += usize::from(!row[measured].is_empty());
+    }
+    assert_eq!(rows, 112);
+}
+
+#[test]
+fn a_fit_is_written_and_read_back_to_the_last_digit() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scan, json) = (folder.path().join("paint.csv"), folder.path().join("fit.json"));
+    std::fs::write(&scan, z307()).unwrap();
+    let mut window = empty();
+    open_path(&mut window, &scan);
+    click(&mut window, "Fit all");
+    export_fit(&mut window, &json);
+    let document = Document::read(&json).unwrap();
+    assert_eq!(document.reports.len(), 2);
+    let knobs = |window: &Window| {
+        let scans = &window.state().state.active_sample().unwrap().scans;
+        scans.iter().map(|scan| scan.knobs.at).collect::<Vec<_>>()
+    };
+    let fitted = knobs(&window);
+    menu(&mut window, "File", "Close all samples");
+    open_path(&mut window, &json);
+    assert_eq!(knobs(&window), fitted);
+    assert!(window.query_by_label_contains("verdict").is_some());
+    // The scan may have moved with the fit.
+    let moved = tempfile::tempdir().unwrap();
+    std::fs::rename(&scan, moved.path().join("paint.csv")).unwrap();
+    std::fs::rename(&json, moved.path().join("fit.json")).unwrap();
+    menu(&mut window, "File", "Close all samples");
+    open_path(&mut window, &moved.path().join("fit.json"));
+    assert_eq!(knobs(&window), fitted);
+    std::fs::remove_file(moved.path().join("paint.csv")).unwrap();
+    open_path(&mut window, &moved.path().join("fit.json"));
+    assert!(window.state().state.errors()[0].contains("cannot be found"));
+}
+
+fn export_fit(window: &mut Window, path: &Path) {
+    write(window, "Save fit as JSON...", path);
+}
+
+#[test]
+fn a_fit_of_a_built_in_sample_is_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fit.json");
+    let mut window = with_z307();
+    click(&mut window, "Both stages");
+    export_fit(&mut window, &json);
+    menu(&mut window, "File", "Close all samples");
+    open_path(&mut window, &json);
+    assert!(window.state().state.active_sample().unwrap().scan().fit_shown().is_some());
+}
+
+#[test]
+fn a_scan_is_not_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("paint.csv");
+    std::fs::write(&scan, z307()).unwrap();
+    let mut window = empty();
+    open_path(&mut window, &scan);
+    menu(&mut window, "File", "Export theory and readings as CSV...");
+    enter_path(&mut window, &scan);
+    assert!(window.query_by_label("This file will be replaced.").is_some());
+    click_role(&mut window, Role::Button, "Write");
+    assert!(window.state().state.errors()[0].contains("is an open scan"));
+    assert_eq!(std::fs::read_to_string(&scan).unwrap(), z307());
+    menu(&mut window, "File", "Export figure as SVG...");
+    enter_path(&mut window, Path::new("/no/such/folder/a.svg"));
+    click_role(&mut window, Role::Button, "Write");
+    for _ in 0..400 {
+        window.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        if window.state().state.errors().len() > 1 {
+            break;
+        }
+    }
+    assert!(window.state().state.errors()[1].contains("/no/such/folder/a.svg"));
+}
+
+#[test]
+fn the_parameter_table_goes_to_the_clipboard() {
+    let mut window = with_z307();
+    click(&mut window, "Both stages");
+    window.get_by_role_and_label(Role::Button, "Edit").click();
+    window.run();
+    window.get_by_label_contains("Copy parameter table").click();
+    let mut copied = String::new();
+    for _ in 0..4 {
+        window.step();
+        for command in &window.output().platform_output.commands {
+            if let egui::OutputCommand::CopyText(text) = command {
+                copied.clone_from(text);
+            }
+        }
+    }
+    let knobs = window.state().state.active_sample().unwrap().scan().knobs;
+    assert!(copied.contains(&format!("k2\t{}\t", knobs.at.k2)), "{copied}");
+    assert_eq!(copied.lines().count(), 5);
+    assert!(copied.lines().nth(1).unwrap().split('\t').all(|cell| !cell.is_empty()));
+}
+
+#[test]
+fn the_window_is_as_it_was_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.json");
+    let settings = || Settings::of(Some(path.clone()));
+    let mut window = window_with([1000.0, 700.0], NoDialogs, settings());
+    window.state_mut().open_at_start(Vec::new());
+    settle(&mut window);
+    assert_eq!(names(&window), ["z307_on_aluminium"]);
+    click(&mut window, "log");
+    menu(&mut window, "View", "Polar form");
+    drop(window);
+    let mut again = window_with([1000.0, 700.0], NoDialogs, settings());
+    again.state_mut().open_at_start(Vec::new());
+    settle(&mut again);
+    let view = again.state().state.view;
+    assert_eq!(view.layout, brdf_fit::plot::Layout::Polar);
+    assert_eq!(view.scale, brdf_fit::plot::Scale::Logarithmic);
+    assert_eq!(names(&again), ["z307_on_aluminium"]);
+    drop(again);
+    std::fs::write(&path, "{\"version\": 1, \"view\": nonsense").unwrap();
+    let damaged = window_with([1000.0, 700.0], NoDialogs, settings());
+    assert_eq!(damaged.state().state.view, brdf_fit::plot::View::default());
+    assert!(damaged.query_by_label_contains("state.json").is_some());
+}
+
+#[test]
+fn without_dialogs_open_asks_for_a_path() {
+    let mut window = empty();
+    menu(&mut window, "File", "Open...");
+    assert!(window.query_by_role_and_label(Role::TextInput, "Path of the file").is_some());
+    window.key_press(egui::Key::Escape);
+    settle(&mut window);
+    assert!(window.state().state.dialog.is_none());
+    let _ = export;
+}

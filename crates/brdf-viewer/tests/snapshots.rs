@@ -1,0 +1,86 @@
+//! Pictures of the window, drawn by the processor: the same pixels on every machine.
+//!
+//! `UPDATE_SNAPSHOTS=1 cargo test -p brdf-viewer --test snapshots` draws them anew; look at each.
+
+mod common;
+
+use brdf_viewer::intent::{Command, Intent};
+use brdf_viewer::state::saved::Settings;
+use common::{NoDialogs, Window, drop_file, settle, window_with};
+
+const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
+
+/// Six states of the window.
+const STATES: [&str; 6] = ["empty", "loaded", "fitted", "logarithmic", "panels", "error"];
+
+fn bring_to(window: &mut Window, state: &str) {
+    let mut wish = |intent: Intent| {
+        window.state_mut().state.apply(intent);
+        settle(window);
+    };
+    if state == "empty" {
+        return;
+    }
+    wish(Intent::OpenBuiltIn(0));
+    if state != "loaded" {
+        wish(Intent::Do(Command::Fit));
+    }
+    match state {
+        "logarithmic" => {
+            wish(Intent::Do(Command::Logarithmic));
+            wish(Intent::Do(Command::Residuals));
+        }
+        "panels" => wish(Intent::Do(Command::Panels)),
+        "error" => {
+            let text = "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n10,95,0.2\n";
+            drop_file(window, "lacquer.csv", text);
+        }
+        _ => {}
+    }
+}
+
+fn check(dark: bool) {
+    let theme = if dark { "dark" } else { "light" };
+    let mut results = Vec::new();
+    for size in SIZES {
+        for state in STATES {
+            let mut window = window_with(size, NoDialogs, Settings::unkept());
+            window.state_mut().state.interface.dark = Some(dark);
+            bring_to(&mut window, state);
+            mask_times(&mut window);
+            window.remove_cursor();
+            settle(&mut window);
+            let name = format!("{state}_{theme}_{}x{}", size[0], size[1]);
+            results.push(window.try_snapshot(&name));
+        }
+    }
+    for result in results {
+        result.unwrap();
+    }
+}
+
+/// Times differ from run to run: they are made alike.
+fn mask_times(window: &mut Window) {
+    let state = &mut window.state_mut().state;
+    state.status = "ready".to_owned();
+    for scan in state.samples.iter_mut().flat_map(|sample| &mut sample.scans) {
+        let Some(report) = &mut scan.fitted else {
+            continue;
+        };
+        let fit = std::sync::Arc::make_mut(report).fit.as_mut().unwrap();
+        fit.seconds = 0.0;
+        for stage in [&mut fit.stage1, &mut fit.stage2].into_iter().flatten() {
+            stage.seconds = 0.0;
+        }
+    }
+}
+
+#[test]
+fn light() {
+    check(false);
+}
+
+#[test]
+fn dark() {
+    check(true);
+}

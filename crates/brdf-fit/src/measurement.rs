@@ -76,18 +76,35 @@ impl Measurement {
     /// The signed view angle in the plane of incidence, in radians; `None` out of the plane, by
     /// more than 1e-6 rad of azimuth.
     pub fn in_plane_theta(&self) -> Option<f64> {
-        let turns = self.phi / PI;
-        let nearest = turns.round();
-        if (turns - nearest).abs() * PI > 1e-6 && self.theta != 0.0 {
+        self.theta_within(0.0, 1e-6)
+    }
+
+    /// The signed view angle in radians in the vertical plane through an azimuth, positive on its
+    /// side; `None` out of that plane, by more than an instrument's 0.05 deg of azimuth.
+    pub fn theta_in_plane(&self, azimuth: f64) -> Option<f64> {
+        self.theta_within(azimuth, SAME_ANGLE)
+    }
+
+    fn theta_within(&self, azimuth: f64, tolerance: f64) -> Option<f64> {
+        let half_turns = (self.phi - azimuth) / PI;
+        let nearest = half_turns.round();
+        if (half_turns - nearest).abs() * PI > tolerance && self.theta != 0.0 {
             return None;
         }
-        let forward = nearest.rem_euclid(2.0) == 1.0;
-        Some(if forward { -self.theta } else { self.theta })
+        let other_half = nearest.rem_euclid(2.0) == 1.0;
+        Some(if other_half { -self.theta } else { self.theta })
     }
 }
 
-/// Incidence angles within this of each other are one, in radians (0.05 deg).
-const SAME_INCIDENCE: f64 = 0.05 * PI / 180.0;
+/// The angle between two azimuths in radians, from 0 to pi; 0 within the rounding of degrees.
+pub(crate) fn angle_between(a: f64, b: f64) -> f64 {
+    let turns = (a - b) / (2.0 * PI);
+    let angle = (turns - turns.round()).abs() * 2.0 * PI;
+    if angle < 1e-6 { 0.0 } else { angle }
+}
+
+/// Angles within this of each other are one, in radians (0.05 deg): so well an instrument sets them.
+const SAME_ANGLE: f64 = 0.05 * PI / 180.0;
 
 /// The readings of one incidence.
 #[derive(Debug, Clone, PartialEq)]
@@ -189,7 +206,7 @@ impl Measurements {
         for i in order {
             let psi = self.readings[i].psi;
             match incidences.last_mut() {
-                Some(last) if psi - last.psi < SAME_INCIDENCE => last.readings.push(i),
+                Some(last) if psi - last.psi < SAME_ANGLE => last.readings.push(i),
                 _ => incidences.push(Incidence {
                     psi,
                     readings: vec![i],
@@ -197,6 +214,30 @@ impl Measurements {
             }
         }
         incidences
+    }
+
+    /// The azimuths, in radians from 0 to below pi, of the vertical planes that hold readings, in
+    /// ascending order. Azimuths that differ by less than 0.05 deg, as an instrument sets them, are
+    /// one plane.
+    pub fn planes(&self) -> Vec<f64> {
+        let oblique = self.readings.iter().filter(|reading| reading.theta != 0.0);
+        let mut all: Vec<f64> = oblique
+            .map(|reading| reading.phi.rem_euclid(PI))
+            // Just below pi is the plane of incidence, but for a rounding.
+            .map(|azimuth| {
+                if PI - azimuth < SAME_ANGLE {
+                    0.0
+                } else {
+                    azimuth
+                }
+            })
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|next, last| *next - *last < SAME_ANGLE);
+        if let Some(first) = all.first_mut().filter(|first| **first < SAME_ANGLE) {
+            *first = 0.0;
+        }
+        all
     }
 
     /// At most about `limit` of the readings, evenly over each incidence in the order of the file,
@@ -280,6 +321,23 @@ mod tests {
         );
         assert_eq!(reading(1.0, 0.1, 0.4, 1.0).in_plane_theta(), None);
         assert_eq!(reading(1.0, 0.1, 0.0, 1.0).in_plane_theta(), Some(0.0));
+    }
+
+    #[test]
+    fn planes_are_those_that_hold_readings() {
+        let at = |phi_deg: f64| reading(1.0, 0.1, 0.4, phi_deg.to_radians());
+        let all = [0.0, 180.0, 90.0, 270.01, 359.99, 45.0].map(at).to_vec();
+        let scan = Measurements::new("test", all).unwrap();
+        let degrees: Vec<f64> = scan
+            .planes()
+            .iter()
+            .map(|p| p.to_degrees().round())
+            .collect();
+        assert_eq!(degrees, [0.0, 45.0, 90.0]);
+        assert_eq!(scan.planes()[0], 0.0);
+        let across = at(270.0).theta_in_plane(90_f64.to_radians());
+        assert_eq!(across, Some(-0.4));
+        assert_eq!(at(91.0).theta_in_plane(90_f64.to_radians()), None);
     }
 
     #[test]

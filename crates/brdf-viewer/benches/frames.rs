@@ -47,7 +47,11 @@ fn frames(criterion: &mut Criterion) {
     ];
     for (name, sample) in samples {
         let (mut window, mut viewer) = window(sample);
-        if viewer.state.active_sample().is_some_and(|s| s.scan().incidences.len() > 8) {
+        if viewer
+            .state
+            .active_sample()
+            .is_some_and(|s| s.scan().incidences.len() > 8)
+        {
             let id = viewer.state.active.expect("a sample");
             viewer.state.apply(Intent::ShowAllIncidences(id, true));
         }
@@ -56,7 +60,11 @@ fn frames(criterion: &mut Criterion) {
         });
         let mut turn = |viewer: &mut Viewer| {
             let mut knobs = viewer.state.active_sample().expect("a sample").scan().knobs;
-            knobs.at.k1 = if knobs.at.k1 > 0.3 { 0.2 } else { 1.001 * knobs.at.k1 };
+            knobs.at.k1 = if knobs.at.k1 > 0.3 {
+                0.2
+            } else {
+                1.001 * knobs.at.k1
+            };
             viewer.state.apply(Intent::Turn(knobs));
         };
         group.bench_function(format!("{name}, a slider is dragged"), |bench| {

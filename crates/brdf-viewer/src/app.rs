@@ -157,7 +157,8 @@ impl Viewer {
             return;
         }
         if let Err(error) = now.write(path) {
-            self.state.note(format!("the settings are not kept: {error}"));
+            self.state
+                .note(format!("the settings are not kept: {error}"));
             // Said once.
             self.settings.path = None;
         }

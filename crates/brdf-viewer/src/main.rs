@@ -183,7 +183,9 @@ fn start(viewer: &mut Viewer, arguments: &Arguments) {
     viewer.open_at_start(arguments.files.clone());
     set_view(viewer, arguments);
     let model = arguments.model.map(Intent::Model);
-    let fit = arguments.fit.then_some(Intent::Fit(Stages::Both, Scope::All));
+    let fit = arguments
+        .fit
+        .then_some(Intent::Fit(Stages::Both, Scope::All));
     viewer.when_read(model.into_iter().chain(fit).collect());
 }
 

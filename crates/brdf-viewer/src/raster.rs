@@ -154,9 +154,19 @@ impl Triangle {
         let [a, b, c] = corners;
         let [p, q, r] = at;
         Some(if area > 0.0 {
-            Self { corners, at, area, plain }
+            Self {
+                corners,
+                at,
+                area,
+                plain,
+            }
         } else {
-            Self { corners: [a, c, b], at: [p, r, q], area: -area, plain }
+            Self {
+                corners: [a, c, b],
+                at: [p, r, q],
+                area: -area,
+                plain,
+            }
         })
     }
 
@@ -271,7 +281,13 @@ mod tests {
     fn words_leave_ink() {
         let image = picture(|painter| {
             let font = egui::FontId::proportional(14.0);
-            painter.text(pos2(2.0, 2.0), egui::Align2::LEFT_TOP, "BRDF", font, Color32::WHITE);
+            painter.text(
+                pos2(2.0, 2.0),
+                egui::Align2::LEFT_TOP,
+                "BRDF",
+                font,
+                Color32::WHITE,
+            );
         });
         assert!(image.pixels().filter(|pixel| pixel.0[3] > 200).count() > 20);
     }

@@ -74,10 +74,12 @@ impl Unseen {
         let output = self.frame(viewer);
         let scale = output.pixels_per_point;
         let primitives = self.ctx.tessellate(output.shapes, scale);
-        let triangles = primitives.iter().map(|primitive| match &primitive.primitive {
-            Primitive::Mesh(mesh) => mesh.indices.len() / 3,
-            Primitive::Callback(_) => 0,
-        });
+        let triangles = primitives
+            .iter()
+            .map(|primitive| match &primitive.primitive {
+                Primitive::Mesh(mesh) => mesh.indices.len() / 3,
+                Primitive::Callback(_) => 0,
+            });
         triangles.sum()
     }
 

@@ -210,7 +210,8 @@ fn fit_all(jobs: Vec<FitJob>, depth: Depth, cancel: &AtomicBool, events: &Events
             events,
         };
         let choice = ModelChoice::Given;
-        let (report, _) = Report::of_watched(&job.measurements, &job.options, choice, depth, &watch);
+        let (report, _) =
+            Report::of_watched(&job.measurements, &job.options, choice, depth, &watch);
         if cancel.load(Ordering::Relaxed) {
             break;
         }
@@ -239,7 +240,8 @@ fn work_on_file(job: Job) -> Event {
 }
 
 fn is_fit(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"))
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
 fn read(path: &Path) -> Result<Vec<Scan>, String> {
@@ -273,7 +275,8 @@ fn read_fit(path: &Path) -> Result<Vec<Scan>, String> {
         let mut scans = read_scan_of(path, file)?;
         for scan in &mut scans {
             let wavelength = scan.wavelength_um();
-            let of_this = |report: &&Report| report.file == file && report.wavelength_um == wavelength;
+            let of_this =
+                |report: &&Report| report.file == file && report.wavelength_um == wavelength;
             if let Some(report) = document.reports.iter().find(of_this) {
                 scan.take(report.clone());
                 scan.settled = scan.knobs;
@@ -287,8 +290,13 @@ fn read_fit(path: &Path) -> Result<Vec<Scan>, String> {
 /// The scan that a fit names: as it is named, beside the fit, or among the built-in ones.
 fn read_scan_of(fit: &Path, file: &str) -> Result<Vec<Scan>, String> {
     let beside = fit.parent().map(|folder| folder.join(file));
-    let same_folder = fit.parent().and_then(|folder| Some(folder.join(Path::new(file).file_name()?)));
-    for path in [Some(PathBuf::from(file)), beside, same_folder].into_iter().flatten() {
+    let same_folder = fit
+        .parent()
+        .and_then(|folder| Some(folder.join(Path::new(file).file_name()?)));
+    for path in [Some(PathBuf::from(file)), beside, same_folder]
+        .into_iter()
+        .flatten()
+    {
         if path.is_file() {
             return read(&path);
         }
@@ -382,8 +390,8 @@ fn curves(measurements: &Measurements, knobs: &Knobs) -> Result<Vec<u8>, String>
 
 fn fits(reports: &[Arc<Report>]) -> Result<Vec<u8>, String> {
     let reports = reports.iter().map(|report| (**report).clone()).collect();
-    let mut bytes = serde_json::to_vec_pretty(&Document::new(reports))
-        .map_err(|error| error.to_string())?;
+    let mut bytes =
+        serde_json::to_vec_pretty(&Document::new(reports)).map_err(|error| error.to_string())?;
     bytes.push(b'\n');
     Ok(bytes)
 }

@@ -29,7 +29,10 @@ fn effect(command: Command, state: &State) -> bool {
         Command::Undo => state.history.can_redo(),
         Command::ResetAll => k1(state) != 0.4,
         Command::Fit => k1(state) != 0.4,
-        Command::FitAll => state.samples[0].scans.iter().all(|scan| scan.fitted.is_some()),
+        Command::FitAll => state.samples[0]
+            .scans
+            .iter()
+            .all(|scan| scan.fitted.is_some()),
         Command::ResetZoom => state.zoom_resets == 2,
         Command::About => state.dialog == Some(Dialog::About),
         // Those that switch are looked at by themselves, the others cannot be carried out here.
@@ -42,9 +45,12 @@ fn k1(state: &State) -> f64 {
 }
 
 fn commands() -> impl Iterator<Item = (&'static str, Command)> {
-    MENUS
-        .iter()
-        .flat_map(|menu| menu.entries.iter().flatten().map(|command| (menu.title, *command)))
+    MENUS.iter().flat_map(|menu| {
+        menu.entries
+            .iter()
+            .flatten()
+            .map(|command| (menu.title, *command))
+    })
 }
 
 #[test]
@@ -52,7 +58,10 @@ fn each_entry_of_the_menus_does_what_it_says() {
     for (title, command) in commands() {
         let mut window = ready();
         let before = window.state().state.is_on(command);
-        assert!(!effect(command, &window.state().state) || is_silent(command), "{command:?}");
+        assert!(
+            !effect(command, &window.state().state) || is_silent(command),
+            "{command:?}"
+        );
         menu(&mut window, title, command.name());
         check(&window, command, before);
     }
@@ -84,12 +93,18 @@ fn check(window: &Window, command: Command, before: Option<bool>) {
         Command::Together => assert_eq!(after, Some(true)),
         _ => assert_eq!(after, before.map(|on| !on), "{command:?}"),
     }
-    assert!(state.errors().is_empty(), "{command:?}: {:?}", state.errors());
+    assert!(
+        state.errors().is_empty(),
+        "{command:?}: {:?}",
+        state.errors()
+    );
 }
 
 #[test]
 fn no_two_commands_have_the_same_key() {
-    let keys: Vec<_> = commands().filter_map(|(_, command)| command.shortcut()).collect();
+    let keys: Vec<_> = commands()
+        .filter_map(|(_, command)| command.shortcut())
+        .collect();
     for (i, key) in keys.iter().enumerate() {
         assert!(!keys[..i].contains(key), "{key:?}");
     }
@@ -103,7 +118,9 @@ fn quit_asks_the_window_to_close() {
     for _ in 0..3 {
         window.step();
         let viewports = &window.output().viewport_output;
-        closed |= viewports.values().any(|v| v.commands.contains(&egui::ViewportCommand::Close));
+        closed |= viewports
+            .values()
+            .any(|v| v.commands.contains(&egui::ViewportCommand::Close));
     }
     assert!(closed);
 }
@@ -128,12 +145,20 @@ fn commands_that_cannot_be_carried_out_are_grey() {
 
 #[test]
 fn every_built_in_sample_opens() {
-    for (i, entry) in brdf_viewer::state::built_in::entries().into_iter().enumerate() {
+    for (i, entry) in brdf_viewer::state::built_in::entries()
+        .into_iter()
+        .enumerate()
+    {
         let mut window = common::empty();
         common::open_built_in(&mut window, &entry.name);
         let state = &window.state().state;
         assert_eq!(state.samples.len(), 1, "{i}");
-        assert_eq!(state.samples[0].scan().readings() > 0, entry.measured, "{}", entry.name);
+        assert_eq!(
+            state.samples[0].scan().readings() > 0,
+            entry.measured,
+            "{}",
+            entry.name
+        );
         assert!(state.errors().is_empty());
     }
 }

@@ -27,12 +27,16 @@ fn open_path(window: &mut Window, path: &Path) {
 
 /// Puts another path into the box of the dialog.
 fn enter_path(window: &mut Window, path: &Path) {
-    window.get_by_role_and_label(Role::TextInput, "Path of the file").focus();
+    window
+        .get_by_role_and_label(Role::TextInput, "Path of the file")
+        .focus();
     window.run();
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     window.run();
     let text = path.display().to_string();
-    window.get_by_role_and_label(Role::TextInput, "Path of the file").type_text(&text);
+    window
+        .get_by_role_and_label(Role::TextInput, "Path of the file")
+        .type_text(&text);
     window.run();
 }
 
@@ -46,7 +50,13 @@ fn export(window: &mut Window, entry: &str, path: &Path) {
 }
 
 fn names(window: &Window) -> Vec<String> {
-    window.state().state.samples.iter().map(|sample| sample.name.clone()).collect()
+    window
+        .state()
+        .state
+        .samples
+        .iter()
+        .map(|sample| sample.name.clone())
+        .collect()
 }
 
 #[test]
@@ -76,7 +86,11 @@ fn a_path_is_opened_and_remembered() {
 fn a_bad_file_is_told_with_its_line_and_value_and_the_data_stay() {
     let mut window = with_z307();
     let before = names(&window);
-    drop_file(&mut window, "bad.csv", "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n95,0,0.2\n");
+    drop_file(
+        &mut window,
+        "bad.csv",
+        "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n95,0,0.2\n",
+    );
     assert_eq!(names(&window), before);
     let error = &window.state().state.errors()[0];
     for part in ["bad.csv", "line 3", "psi_deg", "95"] {
@@ -166,12 +180,21 @@ fn the_figure_is_written_as_svg_and_png() {
         click(&mut window, layout);
         write(&mut window, "Export figure as SVG...", &svg);
         let text = std::fs::read_to_string(&svg).unwrap();
-        assert!(text.contains("<svg") && text.contains("psi = 70 deg"), "{layout}");
+        assert!(
+            text.contains("<svg") && text.contains("psi = 70 deg"),
+            "{layout}"
+        );
         write(&mut window, "Export figure as PNG...", &png);
         let image = image::open(&png).unwrap();
         assert!(image.width() >= 2000, "{}", image.width());
         let pixels = image.to_rgb8();
-        assert!(pixels.pixels().filter(|p| p.0.iter().all(|c| *c < 120)).count() > 1000);
+        assert!(
+            pixels
+                .pixels()
+                .filter(|p| p.0.iter().all(|c| *c < 120))
+                .count()
+                > 1000
+        );
     }
 }
 
@@ -191,8 +214,19 @@ fn theory_and_readings_are_written_for_the_parameters_as_they_are_turned() {
     let mut window = with_z307();
     type_number(&mut window, "k1", "0.25");
     write(&mut window, "Export theory and readings as CSV...", &path);
-    let brdf = window.state().state.active_sample().unwrap().scan().knobs.brdf().unwrap();
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(&path).unwrap();
+    let brdf = window
+        .state()
+        .state
+        .active_sample()
+        .unwrap()
+        .scan()
+        .knobs
+        .brdf()
+        .unwrap();
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_path(&path)
+        .unwrap();
     let columns = reader.headers().unwrap().clone();
     let column = |name: &str| columns.iter().position(|c| c == name).unwrap();
     let (psi, theta) = (column("psi_deg"), column("theta_deg"));
@@ -211,7 +245,10 @@ fn theory_and_readings_are_written_for_the_parameters_as_they_are_turned() {
 #[test]
 fn a_fit_is_written_and_read_back_to_the_last_digit() {
     let folder = tempfile::tempdir().unwrap();
-    let (scan, json) = (folder.path().join("paint.csv"), folder.path().join("fit.json"));
+    let (scan, json) = (
+        folder.path().join("paint.csv"),
+        folder.path().join("fit.json"),
+    );
     std::fs::write(&scan, z307()).unwrap();
     let mut window = empty();
     open_path(&mut window, &scan);
@@ -253,7 +290,16 @@ fn a_fit_of_a_built_in_sample_is_read_back() {
     export_fit(&mut window, &json);
     menu(&mut window, "File", "Close all samples");
     open_path(&mut window, &json);
-    assert!(window.state().state.active_sample().unwrap().scan().fit_shown().is_some());
+    assert!(
+        window
+            .state()
+            .state
+            .active_sample()
+            .unwrap()
+            .scan()
+            .fit_shown()
+            .is_some()
+    );
 }
 
 #[test]
@@ -265,7 +311,11 @@ fn a_scan_is_not_written_over() {
     open_path(&mut window, &scan);
     menu(&mut window, "File", "Export theory and readings as CSV...");
     enter_path(&mut window, &scan);
-    assert!(window.query_by_label("This file will be replaced.").is_some());
+    assert!(
+        window
+            .query_by_label("This file will be replaced.")
+            .is_some()
+    );
     click_role(&mut window, Role::Button, "Write");
     assert!(window.state().state.errors()[0].contains("is an open scan"));
     assert_eq!(std::fs::read_to_string(&scan).unwrap(), z307());
@@ -299,9 +349,19 @@ fn the_parameter_table_goes_to_the_clipboard() {
         }
     }
     let knobs = window.state().state.active_sample().unwrap().scan().knobs;
-    assert!(copied.contains(&format!("k2\t{}\t", knobs.at.k2)), "{copied}");
+    assert!(
+        copied.contains(&format!("k2\t{}\t", knobs.at.k2)),
+        "{copied}"
+    );
     assert_eq!(copied.lines().count(), 5);
-    assert!(copied.lines().nth(1).unwrap().split('\t').all(|cell| !cell.is_empty()));
+    assert!(
+        copied
+            .lines()
+            .nth(1)
+            .unwrap()
+            .split('\t')
+            .all(|cell| !cell.is_empty())
+    );
 }
 
 #[test]
@@ -334,7 +394,11 @@ fn the_window_is_as_it_was_left() {
 fn without_dialogs_open_asks_for_a_path() {
     let mut window = empty();
     menu(&mut window, "File", "Open...");
-    assert!(window.query_by_role_and_label(Role::TextInput, "Path of the file").is_some());
+    assert!(
+        window
+            .query_by_role_and_label(Role::TextInput, "Path of the file")
+            .is_some()
+    );
     window.key_press(egui::Key::Escape);
     settle(&mut window);
     assert!(window.state().state.dialog.is_none());

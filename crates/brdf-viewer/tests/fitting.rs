@@ -8,7 +8,10 @@ use brdf_fit::report::{Depth, Report};
 use brdf_fit::watch::Phase;
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex};
 use brdf_viewer::state::fitting::{Progress, ReadingWeights, Start};
-use common::{Window, click, click_role, drop_file, empty, open_built_in, settle, type_number, with_z307, z307};
+use common::{
+    Window, click, click_role, drop_file, empty, open_built_in, settle, type_number, with_z307,
+    z307,
+};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
@@ -46,7 +49,11 @@ fn both_stages_give_the_numbers_of_the_library() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
     check_same(&window, &expected(|_| {}));
-    assert!(window.query_by_label_contains("stage 1: psi <= 60 deg").is_some());
+    assert!(
+        window
+            .query_by_label_contains("stage 1: psi <= 60 deg")
+            .is_some()
+    );
     assert!(window.query_by_label("1 of 1 fitted").is_some());
     let run = window.state().state.run.clone().unwrap();
     let fit = report(&window).fit.unwrap();
@@ -78,7 +85,10 @@ fn the_settings_are_those_of_the_fit() {
     type_number(&mut window, "Stage 1 up to", "40");
     click_role(&mut window, Role::ComboBox, "Weights of readings");
     click(&mut window, "solid angle");
-    assert_eq!(window.state().state.choice.weights, ReadingWeights::SolidAngle);
+    assert_eq!(
+        window.state().state.choice.weights,
+        ReadingWeights::SolidAngle
+    );
     click(&mut window, "Both stages");
     check_same(
         &window,
@@ -129,12 +139,19 @@ fn turned_parameters_are_told_and_lose_the_band() {
     let banded = |window: &Window| {
         let state = &window.state().state;
         let id = state.active_sample().unwrap().scan_id();
-        state.shown.curves(id)[0].theory.iter().any(|t| t.sigma.is_some())
+        state.shown.curves(id)[0]
+            .theory
+            .iter()
+            .any(|t| t.sigma.is_some())
     };
     assert!(banded(&window));
     type_number(&mut window, "k1", "0.5");
     assert!(!banded(&window));
-    assert!(window.query_by_label("The parameters were turned since this fit.").is_some());
+    assert!(
+        window
+            .query_by_label("The parameters were turned since this fit.")
+            .is_some()
+    );
 }
 
 /// A scan large enough for its fit to be seen: 20 incidences, 200,000 readings.
@@ -156,7 +173,16 @@ fn large() -> String {
 fn a_long_fit_is_followed_and_cancelled() {
     let mut window = empty();
     drop_file(&mut window, "large.csv", &large());
-    assert_eq!(window.state().state.active_sample().unwrap().scan().readings(), 200_000);
+    assert_eq!(
+        window
+            .state()
+            .state
+            .active_sample()
+            .unwrap()
+            .scan()
+            .readings(),
+        200_000
+    );
     click_role(&mut window, Role::ComboBox, "model");
     let entries = window.get_all_by_label("power+n: the paper's with a free exponent, n free");
     entries.last().unwrap().click();
@@ -171,19 +197,32 @@ fn a_long_fit_is_followed_and_cancelled() {
         let frame = Instant::now();
         window.step();
         longest_frame = longest_frame.max(frame.elapsed());
-        lengths.push(window.state().state.run.as_ref().map_or(0, |run| run.points.len()));
+        lengths.push(
+            window
+                .state()
+                .state
+                .run
+                .as_ref()
+                .map_or(0, |run| run.points.len()),
+        );
         std::thread::sleep(Duration::from_millis(1));
     }
     assert!(window.query_by_role(Role::ProgressIndicator).is_some());
     window.get_by_role_and_label(Role::Button, "Cancel").click();
     let cancelled = Instant::now();
     while window.state().state.is_fitting() {
-        assert!(cancelled.elapsed() < Duration::from_secs(20), "the fit does not stop");
+        assert!(
+            cancelled.elapsed() < Duration::from_secs(20),
+            "the fit does not stop"
+        );
         window.step();
         std::thread::sleep(Duration::from_millis(1));
     }
     settle(&mut window);
-    println!("cancelled within {:?}; longest frame {longest_frame:?}", cancelled.elapsed());
+    println!(
+        "cancelled within {:?}; longest frame {longest_frame:?}",
+        cancelled.elapsed()
+    );
     let state = &window.state().state;
     assert_eq!(state.run.as_ref().unwrap().progress, Progress::Cancelled);
     assert_eq!(state.active_sample().unwrap().scan().knobs, before);
@@ -201,5 +240,9 @@ fn all_samples_are_fitted_together() {
     let run = state.run.as_ref().unwrap();
     assert_eq!((run.jobs, run.done), (4, 4));
     let measured = state.samples.iter().filter(|s| s.scan().readings() > 0);
-    assert!(measured.flat_map(|s| &s.scans).all(|scan| scan.fitted.is_some()));
+    assert!(
+        measured
+            .flat_map(|s| &s.scans)
+            .all(|scan| scan.fitted.is_some())
+    );
 }

@@ -37,7 +37,16 @@ fn a_check_box_hides_an_incidence() {
     let mut window = with_z307();
     let colour = colour_of(&window, 4);
     assert!(!painted_lines(&window, colour).is_empty());
-    let shown = |window: &Window| window.state().state.active_sample().unwrap().scan().shown_psi().len();
+    let shown = |window: &Window| {
+        window
+            .state()
+            .state
+            .active_sample()
+            .unwrap()
+            .scan()
+            .shown_psi()
+            .len()
+    };
     assert_eq!(shown(&window), 5);
     click(&mut window, "70°");
     assert_eq!(shown(&window), 4);
@@ -57,7 +66,10 @@ fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
     let marks = painted_marks(&window, colour);
     click(&mut window, "log");
     assert_eq!(window.state().state.view.scale, Scale::Logarithmic);
-    assert_eq!(window.get_by_label("log").accesskit_node().toggled(), Some(Toggled::True));
+    assert_eq!(
+        window.get_by_label("log").accesskit_node().toggled(),
+        Some(Toggled::True)
+    );
     assert_eq!(painted_marks(&window, colour), marks - 1);
     let words = "1 reading <= 0 cannot be shown on a logarithmic axis";
     assert!(window.query_by_label_contains(words).is_some());
@@ -75,16 +87,31 @@ fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
 fn another_plane_than_that_of_incidence() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
-    assert!(window.query_by_label_contains("4 readings out of this plane").is_some());
+    assert!(
+        window
+            .query_by_label_contains("4 readings out of this plane")
+            .is_some()
+    );
     click_role(&mut window, Role::ComboBox, "plane of view");
     click(&mut window, "phi = 90° / 270°");
     let state = &window.state().state;
     assert!((state.view.azimuth.to_degrees() - 90.0).abs() < 1e-9);
     let id = state.active_sample().unwrap().scan_id();
-    let shown: Vec<f64> = state.shown.curves(id)[0].readings.iter().map(|r| r.theta_deg).collect();
+    let shown: Vec<f64> = state.shown.curves(id)[0]
+        .readings
+        .iter()
+        .map(|r| r.theta_deg)
+        .collect();
     assert_eq!(shown.len(), 3);
-    assert!((shown[0] + 40.0).abs() < 1e-9 && (shown[2] - 40.0).abs() < 1e-9, "{shown:?}");
-    assert!(window.query_by_label_contains("6 readings out of this plane").is_some());
+    assert!(
+        (shown[0] + 40.0).abs() < 1e-9 && (shown[2] - 40.0).abs() < 1e-9,
+        "{shown:?}"
+    );
+    assert!(
+        window
+            .query_by_label_contains("6 readings out of this plane")
+            .is_some()
+    );
 }
 
 #[test]
@@ -93,15 +120,22 @@ fn error_bars_are_painted_where_sigma_is_given() {
     drop_file(&mut window, "two.csv", TWO_PLANES);
     let bars = |window: &Window| {
         let colour = colour_of(window, 1).gamma_multiply(0.55);
-        let count = |shape: &egui::Shape| match shape {
+        let count = |shape: &egui::Shape| {
+            match shape {
             egui::Shape::LineSegment { stroke, .. } => usize::from(stroke.color == colour),
             egui::Shape::Vec(shapes) => shapes
                 .iter()
                 .filter(|s| matches!(s, egui::Shape::LineSegment { stroke, .. } if stroke.color == colour))
                 .count(),
             _ => 0,
+        }
         };
-        window.output().shapes.iter().map(|s| count(&s.shape)).sum::<usize>()
+        window
+            .output()
+            .shapes
+            .iter()
+            .map(|s| count(&s.shape))
+            .sum::<usize>()
     };
     assert_eq!(bars(&window), 2);
     let plain = TWO_PLANES.replace(",sigma_per_sr", ",other");
@@ -183,7 +217,9 @@ fn small_multiples_have_one_plot_an_incidence_with_the_same_axes() {
     let mut window = with_z307();
     click(&mut window, "Panels");
     assert_eq!(window.state().state.view.layout, Layout::Panels);
-    let bounds: Vec<_> = (0..5).map(|i| *plot(&window, &format!("theory {i}")).bounds()).collect();
+    let bounds: Vec<_> = (0..5)
+        .map(|i| *plot(&window, &format!("theory {i}")).bounds())
+        .collect();
     assert!(bounds.iter().all(|b| b == &bounds[0]));
     assert_eq!(window.get_all_by_label("BRDF plot").count(), 5);
 }
@@ -203,7 +239,10 @@ fn the_polar_form_has_f_r_as_radius() {
             continue;
         }
         let expected = brdf.value(&brdf_core::Geometry::in_plane(psi, theta).unwrap());
-        assert!((radius - expected).abs() < pixel + 0.02 * expected, "{point:?}: {expected}");
+        assert!(
+            (radius - expected).abs() < pixel + 0.02 * expected,
+            "{point:?}: {expected}"
+        );
     }
 }
 
@@ -214,7 +253,8 @@ fn the_pointer_reads_out_what_it_is_at() {
     let id = state.active_sample().unwrap().scan_id();
     let reading = state.shown.curves(id)[4].readings[2];
     let transform = plot(&window, "theory").transform();
-    let at = transform.position_from_point(&egui_plot::PlotPoint::new(reading.theta_deg, reading.value));
+    let at =
+        transform.position_from_point(&egui_plot::PlotPoint::new(reading.theta_deg, reading.value));
     window.hover_at(at);
     window.run();
     let digits = brdf_fit::words::digits;
@@ -259,11 +299,19 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
     click(&mut window, "E against iteration");
-    assert!(window.query_by_label("plot of E against iteration").is_some());
+    assert!(
+        window
+            .query_by_label("plot of E against iteration")
+            .is_some()
+    );
     click(&mut window, "Profile of k1");
     assert!(window.query_by_label("plot of the profile of k1").is_some());
     click(&mut window, "Reflectance");
-    assert!(window.query_by_label("plot of the hemispherical reflectance").is_some());
+    assert!(
+        window
+            .query_by_label("plot of the hemispherical reflectance")
+            .is_some()
+    );
     click(&mut window, "Tables");
     assert!(window.query_by_label_contains("verdict").is_some());
 }

@@ -15,10 +15,36 @@ use rand::rngs::StdRng;
 use rand::{RngExt as _, SeedableRng as _};
 
 const KEYS: [Key; 30] = [
-    Key::Tab, Key::Enter, Key::Escape, Key::Space, Key::ArrowUp, Key::ArrowDown, Key::ArrowLeft,
-    Key::ArrowRight, Key::Home, Key::End, Key::Backspace, Key::Delete, Key::F1, Key::F5, Key::F6,
-    Key::F7, Key::F8, Key::F9, Key::Z, Key::Y, Key::L, Key::K, Key::D, Key::Num1, Key::Num2,
-    Key::Num3, Key::C, Key::O, Key::A, Key::W,
+    Key::Tab,
+    Key::Enter,
+    Key::Escape,
+    Key::Space,
+    Key::ArrowUp,
+    Key::ArrowDown,
+    Key::ArrowLeft,
+    Key::ArrowRight,
+    Key::Home,
+    Key::End,
+    Key::Backspace,
+    Key::Delete,
+    Key::F1,
+    Key::F5,
+    Key::F6,
+    Key::F7,
+    Key::F8,
+    Key::F9,
+    Key::Z,
+    Key::Y,
+    Key::L,
+    Key::K,
+    Key::D,
+    Key::Num1,
+    Key::Num2,
+    Key::Num3,
+    Key::C,
+    Key::O,
+    Key::A,
+    Key::W,
 ];
 
 /// More memory than this over that after the first tenth is a leak, in bytes.
@@ -150,7 +176,10 @@ fn drop_something(window: &mut Window, random: &mut StdRng, scan: &str) {
         // Somewhere in it something else stands.
         let at = random.random_range(0..text.len());
         if text.is_char_boundary(at) {
-            text.insert_str(at, ["x", ",", "\n", "-1e400", "\"", "NaN"][random.random_range(0..6)]);
+            text.insert_str(
+                at,
+                ["x", ",", "\n", "-1e400", "\"", "NaN"][random.random_range(0..6)],
+            );
         }
     }
     drop_file(window, "dropped.csv", &text);

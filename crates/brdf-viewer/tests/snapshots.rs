@@ -11,7 +11,14 @@ use common::{NoDialogs, Window, drop_file, settle, window_with};
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 
 /// Six states of the window.
-const STATES: [&str; 6] = ["empty", "loaded", "fitted", "logarithmic", "panels", "error"];
+const STATES: [&str; 6] = [
+    "empty",
+    "loaded",
+    "fitted",
+    "logarithmic",
+    "panels",
+    "error",
+];
 
 fn bring_to(window: &mut Window, state: &str) {
     let mut wish = |intent: Intent| {
@@ -63,7 +70,11 @@ fn check(dark: bool) {
 fn mask_times(window: &mut Window) {
     let state = &mut window.state_mut().state;
     state.status = "ready".to_owned();
-    for scan in state.samples.iter_mut().flat_map(|sample| &mut sample.scans) {
+    for scan in state
+        .samples
+        .iter_mut()
+        .flat_map(|sample| &mut sample.scans)
+    {
         let Some(report) = &mut scan.fitted else {
             continue;
         };

@@ -5,7 +5,9 @@ mod common;
 use brdf_core::Geometry;
 use brdf_fit::model::{Model, Parameter};
 use brdf_viewer::state::sample::Knobs;
-use common::{Window, click, click_role, colour_of, menu, painted_curve, settle, type_number, with_z307};
+use common::{
+    Window, click, click_role, colour_of, menu, painted_curve, settle, type_number, with_z307,
+};
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 
@@ -38,9 +40,13 @@ fn check_painted_curves(window: &Window) {
             }
             // Near the mirror direction a hundredth of a pixel in theta shows in f_r.
             let aside = 2e-3_f64.to_radians();
-            let slope = (brdf.value(&Geometry::in_plane(psi, theta + aside).unwrap()) - expected).abs();
+            let slope =
+                (brdf.value(&Geometry::in_plane(psi, theta + aside).unwrap()) - expected).abs();
             let error = (point.y - expected).abs();
-            assert!(error < 0.2 * pixel + 2.0 * slope, "psi {psi}, {point:?}: {expected}");
+            assert!(
+                error < 0.2 * pixel + 2.0 * slope,
+                "psi {psi}, {point:?}: {expected}"
+            );
         }
     }
 }
@@ -150,7 +156,9 @@ fn the_keys_of_a_slider_move_it() {
 fn every_model_can_be_chosen_and_has_its_parameters() {
     let mut window = with_z307();
     for model in Model::ALL {
-        window.get_by_role_and_label(Role::ComboBox, "model").click();
+        window
+            .get_by_role_and_label(Role::ComboBox, "model")
+            .click();
         window.run();
         let name = format!("{model}: {}", model.description());
         let entries = window.get_all_by_label(&name);
@@ -159,7 +167,9 @@ fn every_model_can_be_chosen_and_has_its_parameters() {
         assert_eq!(knobs(&window).model, model);
         for parameter in Parameter::ALL {
             let name = parameter.to_string();
-            let slider = window.query_by_role_and_label(Role::Slider, &name).is_some();
+            let slider = window
+                .query_by_role_and_label(Role::Slider, &name)
+                .is_some();
             assert_eq!(slider, knobs(&window).parameters().contains(&parameter));
         }
         check_painted_curves(&window);
@@ -174,7 +184,10 @@ fn a_fit_leaves_a_held_parameter_as_it_is() {
     type_number(&mut window, "k1", "0.3");
     click(&mut window, "hold k1");
     let held = window.get_by_label("hold k1");
-    assert_eq!(held.accesskit_node().toggled(), Some(egui::accesskit::Toggled::True));
+    assert_eq!(
+        held.accesskit_node().toggled(),
+        Some(egui::accesskit::Toggled::True)
+    );
     let free = knobs(&window).at.k2;
     click(&mut window, "Both stages");
     assert_eq!(knobs(&window).at.k1, 0.3);
@@ -188,7 +201,9 @@ fn a_fit_leaves_a_held_parameter_as_it_is() {
 fn parameters_are_those_of_the_wavelength() {
     let mut window = with_z307();
     type_number(&mut window, "k1", "0.7");
-    window.get_by_role_and_label(Role::ComboBox, "Wavelength").click();
+    window
+        .get_by_role_and_label(Role::ComboBox, "Wavelength")
+        .click();
     window.run();
     window.get_by_label("0.85223 um").click();
     settle(&mut window);

@@ -6,7 +6,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, IntoFont, RGBColor, TextStyle};
 
 use super::PlotError;
-use super::style::{Mark, SIZE};
+use super::palette::MarkShape;
+use super::style::SIZE;
 
 /// The backend's coordinates are whole numbers: so many of them are one unit of the figure, or a
 /// curve would be a staircase.
@@ -133,20 +134,20 @@ impl Canvas<'_> {
     pub(super) fn mark(
         &mut self,
         (x, y): Place,
-        mark: Mark,
+        mark: MarkShape,
         colour: RGBColor,
     ) -> Result<(), PlotError> {
         // Half sizes that make the marks look equally large.
         let square = 2.3;
         let (diamond, triangle) = (3.4, 3.2);
         match mark {
-            Mark::Circle => {
+            MarkShape::Circle => {
                 let (centre, radius) = (fine_place((x, y)), fine_width(2.7));
                 let style = colour.filled();
                 let drawn = self.backend.draw_circle(centre, radius, &style, true);
                 drawn.map_err(failed)
             }
-            Mark::Square => self.area(
+            MarkShape::Square => self.area(
                 &[
                     (x - square, y - square),
                     (x + square, y - square),
@@ -155,7 +156,7 @@ impl Canvas<'_> {
                 ],
                 &colour,
             ),
-            Mark::Diamond => self.area(
+            MarkShape::Diamond => self.area(
                 &[
                     (x - diamond, y),
                     (x, y - diamond),
@@ -164,7 +165,7 @@ impl Canvas<'_> {
                 ],
                 &colour,
             ),
-            Mark::Triangle => self.area(
+            MarkShape::Triangle => self.area(
                 &[
                     (x - triangle, y + 0.6 * triangle),
                     (x, y - 1.1 * triangle),

@@ -1,161 +1,217 @@
-//! What of the readings and of the theory the figures of the view angle show: readings in the
-//! plane of incidence, a few incidences, and the theory's line for each.
+//! The curves of a view: readings and theory of each incidence, as a screen or a figure shows them.
 
 use std::fmt::Write as _;
 
 use brdf_core::{AnyBrdf, Geometry};
 
 use super::Sigma;
-use super::style::MOST_CURVES;
-use crate::measurement::{Incidence, Measurement, Measurements};
+use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
+use super::selection::Selection;
+use super::view::{Scale, View};
+use crate::measurement::{Measurement, Measurements};
 use crate::words::{counted, in_degrees};
-
-/// More readings of an incidence than this cannot be told apart in a figure.
-const MOST_READINGS: usize = 1000;
 
 /// The line of the theory ends here, in degrees: at 90 deg it may be anything.
 const THEORY_END_DEG: f64 = 89.5;
 
-/// The curves of the figures, and what they leave out.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Curves {
-    /// In ascending order of incidence.
-    pub(super) curves: Vec<Curve>,
-    /// Sentences for the captions, each with a blank before it.
-    pub(super) left_out: String,
-}
+/// A figure has the width of so many marks.
+const FIGURE_COLUMNS: usize = 330;
+
+/// A logarithmic axis has at the most so many decades: a single reading of next to nothing shall
+/// not squeeze the others.
+pub(super) const DECADES: i32 = 6;
 
 /// One incidence.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Curve {
-    /// Incidence angle in degrees.
-    pub(super) psi_deg: f64,
-    /// The readings in the plane of incidence, in ascending order of view angle.
-    pub(super) readings: Vec<Reading>,
+pub struct Curve {
+    /// Incidence angle psi in radians.
+    pub psi: f64,
+    /// The readings, in ascending order of view angle.
+    pub readings: Vec<Reading>,
     /// The theory, in ascending order of view angle.
-    pub(super) theory: Vec<Theory>,
+    pub theory: Vec<Theory>,
 }
 
-/// A reading in the plane of incidence.
+/// A reading as it is shown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Reading {
-    /// Signed view angle in degrees.
-    pub(super) theta_deg: f64,
-    /// Measured f_r in 1/sr.
-    pub(super) brdf: f64,
-    /// Its standard deviation in 1/sr.
-    pub(super) sigma: Option<f64>,
-    /// Measured less theory in 1/sr.
-    pub(super) residual: f64,
+pub struct Reading {
+    /// Its place among the measurements.
+    pub index: usize,
+    /// View angle in degrees, signed as the view says.
+    pub theta_deg: f64,
+    /// What was measured, in the quantity of the view.
+    pub value: f64,
+    /// Its standard deviation.
+    pub sigma: Option<f64>,
+    /// The theory there.
+    pub theory: f64,
 }
 
 /// The theory at one view angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Theory {
-    /// Signed view angle in degrees.
-    pub(super) theta_deg: f64,
-    /// f_r in 1/sr.
-    pub(super) brdf: f64,
-    /// Its standard error in 1/sr, where it is known and positive.
-    pub(super) sigma: Option<f64>,
+pub struct Theory {
+    /// View angle in degrees, signed as the view says.
+    pub theta_deg: f64,
+    /// Its value, in the quantity of the view.
+    pub value: f64,
+    /// Its standard error, where it is known and positive.
+    pub sigma: Option<f64>,
 }
 
-impl Curves {
-    pub(super) fn of(measurements: &Measurements, brdf: &AnyBrdf, sigma: Sigma) -> Self {
-        let readings = measurements.readings();
-        let in_plane: Vec<Incidence> = measurements
-            .incidences()
-            .into_iter()
-            .filter_map(|incidence| only_in_plane(incidence, readings))
-            .collect();
-        let shown = evenly(&in_plane, MOST_CURVES);
-        let curves = shown.iter().map(|incidence| Curve {
-            psi_deg: in_degrees(incidence.psi),
-            readings: shown_readings(incidence, readings, brdf),
-            theory: theory(brdf, incidence.psi, sigma),
-        });
-        Self {
-            curves: curves.collect(),
-            left_out: left_out(readings.len(), &in_plane, &shown),
+impl Reading {
+    /// Measured less theory.
+    pub fn residual(&self) -> f64 {
+        self.value - self.theory
+    }
+}
+
+/// The curves of a selection, one for each of its traces. `sigma` gives the standard error of the
+/// theory in 1/sr at a geometry.
+pub fn curves(
+    measurements: &Measurements,
+    selection: &Selection,
+    brdf: &AnyBrdf,
+    sigma: Option<&dyn Fn(&Geometry) -> f64>,
+    view: &View,
+) -> Vec<Curve> {
+    let all = measurements.readings();
+    let curve = |psi: f64, readings: &[usize]| Curve {
+        psi,
+        readings: readings
+            .iter()
+            .filter_map(|&i| shown_reading(i, &all[i], brdf, view))
+            .collect(),
+        theory: theory(brdf, psi, sigma, view),
+    };
+    selection
+        .traces
+        .iter()
+        .map(|trace| curve(trace.psi, &trace.readings))
+        .collect()
+}
+
+fn shown_reading(i: usize, of: &Measurement, brdf: &AnyBrdf, view: &View) -> Option<Reading> {
+    let at = of.geometry().ok()?;
+    let quantity = |brdf: f64| view.quantity.of(brdf, at.cos_theta());
+    Some(Reading {
+        index: i,
+        theta_deg: view.signed_deg(of.theta_in_plane(view.azimuth)?),
+        value: quantity(of.brdf),
+        sigma: of.sigma.map(quantity),
+        theory: quantity(brdf.value(&at)),
+    })
+}
+
+fn theory(brdf: &AnyBrdf, psi: f64, sigma: Sigma, view: &View) -> Vec<Theory> {
+    let at = |theta_deg: f64| {
+        let geometry = Geometry::new(psi, view.theta(theta_deg), view.azimuth).ok()?;
+        let quantity = |brdf: f64| view.quantity.of(brdf, geometry.cos_theta());
+        let sigma = sigma.map(|sigma| quantity(sigma(&geometry)));
+        Some(Theory {
+            theta_deg,
+            value: quantity(brdf.value(&geometry)),
+            sigma: sigma.filter(|sigma| *sigma > 0.0 && sigma.is_finite()),
+        })
+    };
+    theory_angles(view.mirror_deg(psi))
+        .into_iter()
+        .filter_map(at)
+        .collect()
+}
+
+/// Half degrees, and closer and closer ones beside the mirror direction, where a peak may be
+/// narrower than any step. In degrees.
+fn theory_angles(mirror_deg: Option<f64>) -> Vec<f64> {
+    let half_degrees = (-179..=179).map(|half| 0.5 * f64::from(half));
+    let beside = (0..40).map(|i| 10_f64.powf(-0.1 * f64::from(i)));
+    let offsets = beside.flat_map(|offset| [-offset, offset]).chain([0.0]);
+    let at_mirror = mirror_deg
+        .into_iter()
+        .flat_map(|mirror| offsets.clone().map(move |offset| mirror + offset));
+    let mut angles: Vec<f64> = half_degrees
+        .chain(at_mirror)
+        .filter(|angle| angle.abs() <= THEORY_END_DEG)
+        .collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup();
+    angles
+}
+
+/// The ends of the axis of a view: its readings with their error bars, and the theory beside them.
+/// `None` where a logarithmic axis has nothing positive to show.
+///
+/// Of the theory that is what lies within the readings of its incidence and not above three times
+/// the largest of all: beyond, it may be many times as large as any reading. A logarithmic axis has
+/// 6 decades at the most.
+pub fn value_range<'a>(
+    curves: impl Iterator<Item = &'a Curve> + Clone,
+    scale: Scale,
+) -> Option<(f64, f64)> {
+    let high = values(curves.clone()).fold(f64::NEG_INFINITY, f64::max);
+    match scale {
+        Scale::Linear => {
+            let low = values(curves.clone()).chain(lower_ends(curves));
+            let low = low.fold(0.0, f64::min);
+            let high = high.max(0.0);
+            let margin = 0.04 * (high - low);
+            let below = if low < 0.0 { margin } else { 0.0 };
+            (high > low).then_some((low - below, high + margin))
+        }
+        Scale::Logarithmic => {
+            let low = values(curves).filter(|value| *value > 0.0);
+            let low = low.fold(f64::INFINITY, f64::min);
+            let least = high * 10_f64.powi(-DECADES);
+            (high > 0.0 && low.is_finite()).then_some((low.max(least) / 1.2, high * 1.2))
         }
     }
+}
 
-    /// The theory alone, at incidence angles in degrees.
-    pub(super) fn of_theory(brdf: &AnyBrdf, psi_deg: &[f64]) -> Self {
-        let curves = psi_deg.iter().map(|&psi_deg| Curve {
-            psi_deg,
-            readings: Vec::new(),
-            theory: theory(brdf, psi_deg.to_radians(), None),
-        });
-        Self {
-            curves: curves.collect(),
-            left_out: String::new(),
-        }
-    }
+/// Readings with the upper ends of their error bars, and the theory with that of its band, which
+/// the axis of a figure has to hold.
+pub(super) fn values<'a>(
+    curves: impl Iterator<Item = &'a Curve> + Clone,
+) -> impl Iterator<Item = f64> {
+    let readings = curves.clone().flat_map(|curve| &curve.readings);
+    let largest = readings.clone().map(|reading| reading.value);
+    let highest = match 3.0 * largest.fold(0.0, f64::max) {
+        0.0 => f64::INFINITY,
+        highest => highest,
+    };
+    let measured = readings.flat_map(|reading| {
+        let sigma = reading.sigma.unwrap_or(0.0);
+        [reading.value, reading.value + sigma]
+    });
+    let theory = curves.flat_map(Curve::theory_beside_readings);
+    let theory = theory.flat_map(|theory| {
+        let sigma = theory.sigma.unwrap_or(0.0);
+        [theory.value, theory.value + sigma]
+    });
+    measured.chain(theory.filter(move |value| *value <= highest))
+}
 
-    /// All readings that are shown.
-    pub(super) fn readings(&self) -> impl Iterator<Item = &Reading> {
-        self.curves.iter().flat_map(|curve| &curve.readings)
-    }
-
-    /// Readings with the upper ends of their error bars, and the theory with that of its band,
-    /// which the axis of a figure has to hold.
-    ///
-    /// Of the theory that is what lies within the readings of its incidence and not above three
-    /// times the largest of all: beyond, it may be many times as large as any reading.
-    pub(super) fn values(&self) -> impl Iterator<Item = f64> {
-        let measured = self.readings().flat_map(|reading| {
-            let sigma = reading.sigma.unwrap_or(0.0);
-            [reading.brdf, reading.brdf + sigma]
-        });
-        let largest = self.readings().map(|reading| reading.brdf);
-        let highest = match 3.0 * largest.fold(0.0, f64::max) {
-            0.0 => f64::INFINITY,
-            highest => highest,
-        };
-        let theory = self.curves.iter().flat_map(Curve::theory_beside_readings);
-        let theory = theory.flat_map(|theory| {
-            let sigma = theory.sigma.unwrap_or(0.0);
-            [theory.brdf, theory.brdf + sigma]
-        });
-        measured.chain(theory.filter(move |value| *value <= highest))
-    }
-
-    /// The lower ends of the error bars. On a logarithmic axis they may lie at any depth.
-    pub(super) fn lower_ends(&self) -> impl Iterator<Item = f64> {
-        self.readings()
-            .filter_map(|reading| Some(reading.brdf - reading.sigma?))
-    }
-
-    /// Whether any reading is shown.
-    pub(super) fn measured(&self) -> bool {
-        self.readings().next().is_some()
-    }
-
-    /// Whether any reading has an error bar.
-    pub(super) fn error_bars(&self) -> bool {
-        self.readings().any(|reading| reading.sigma.is_some())
-    }
-
-    /// Whether the theory has a band.
-    pub(super) fn bands(&self) -> bool {
-        let mut theory = self.curves.iter().flat_map(|curve| &curve.theory);
-        theory.any(|theory| theory.sigma.is_some())
-    }
+/// The lower ends of the error bars. On a logarithmic axis they may lie at any depth.
+pub(super) fn lower_ends<'a>(curves: impl Iterator<Item = &'a Curve>) -> impl Iterator<Item = f64> {
+    curves
+        .flat_map(|curve| &curve.readings)
+        .filter_map(|reading| Some(reading.value - reading.sigma?))
 }
 
 impl Curve {
     /// The incidence in words.
     pub(super) fn name(&self) -> String {
-        format!("psi = {} deg", (self.psi_deg * 100.0).round() / 100.0)
+        format!(
+            "psi = {} deg",
+            (in_degrees(self.psi) * 100.0).round() / 100.0
+        )
     }
 
-    /// The bands of the theory: view angle in degrees, and f_r less and more its standard error.
-    /// Where that is not known the band is interrupted.
+    /// The bands of the theory: view angle in degrees, and its value less and more its standard
+    /// error. Where that is not known the band is interrupted.
     pub(super) fn bands(&self) -> Vec<Vec<(f64, [f64; 2])>> {
         let ends = |theory: &Theory| {
             let sigma = theory.sigma?;
-            Some((theory.theta_deg, [theory.brdf - sigma, theory.brdf + sigma]))
+            let ends = [theory.value - sigma, theory.value + sigma];
+            Some((theory.theta_deg, ends))
         };
         self.theory
             .chunk_by(|a, b| a.sigma.is_some() && b.sigma.is_some())
@@ -174,14 +230,132 @@ impl Curve {
     }
 }
 
-fn only_in_plane(mut incidence: Incidence, readings: &[Measurement]) -> Option<Incidence> {
-    let in_plane = |i: &usize| readings[*i].in_plane_theta().is_some();
-    incidence.readings.retain(in_plane);
-    (!incidence.readings.is_empty()).then_some(incidence)
+/// A curve with how it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Styled {
+    pub(super) curve: Curve,
+    pub(super) name: String,
+    pub(super) colour: [u8; 3],
+    pub(super) mark: MarkShape,
+}
+
+/// The curves of a figure, and what they leave out.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Curves {
+    pub(super) view: View,
+    /// In ascending order of incidence, sample by sample.
+    pub(super) curves: Vec<Styled>,
+    /// Sentences for the captions, each with a blank before it.
+    pub(super) left_out: String,
+}
+
+/// What a figure shows of one sample.
+pub(super) struct Source<'a> {
+    /// Its name, where there are several.
+    pub(super) name: Option<&'a str>,
+    pub(super) measurements: &'a Measurements,
+    pub(super) brdf: &'a AnyBrdf,
+    pub(super) sigma: Sigma<'a>,
+    /// Angles psi in radians; `None` takes those with readings in the plane, evenly as many as have
+    /// colours of their own.
+    pub(super) incidences: Option<&'a [f64]>,
+    pub(super) family: usize,
+}
+
+impl Curves {
+    /// The curves of some samples.
+    pub(super) fn of(sources: &[Source], view: &View) -> Self {
+        let mut all = Self {
+            view: *view,
+            curves: Vec::new(),
+            left_out: String::new(),
+        };
+        for source in sources {
+            all.add(source);
+        }
+        all
+    }
+
+    /// The theory alone, at incidence angles in degrees.
+    pub(super) fn of_theory(brdf: &AnyBrdf, psi_deg: &[f64]) -> Self {
+        let incidences: Vec<f64> = psi_deg.iter().map(|psi| psi.to_radians()).collect();
+        let source = Source {
+            name: None,
+            measurements: &Measurements::default(),
+            brdf,
+            sigma: None,
+            incidences: Some(&incidences),
+            family: 0,
+        };
+        Self::of(&[source], &View::default())
+    }
+
+    fn add(&mut self, source: &Source) {
+        let view = self.view;
+        let of = |incidences: Option<&[f64]>| {
+            Selection::of(source.measurements, &view, incidences, FIGURE_COLUMNS)
+        };
+        let mut selection = of(source.incidences);
+        if source.incidences.is_none() {
+            selection.traces.retain(|trace| trace.all > 0);
+        }
+        let known = selection.traces.len();
+        let in_plane = selection.all();
+        if source.incidences.is_none() {
+            selection.traces = evenly(&selection.traces, FEW_CURVES);
+        }
+        self.left_out += &left_out(source, &view, &selection, known, in_plane);
+        let all = curves(
+            source.measurements,
+            &selection,
+            source.brdf,
+            source.sigma,
+            &view,
+        );
+        let count = all.len();
+        for (i, curve) in all.into_iter().enumerate() {
+            let name = match source.name {
+                None => curve.name(),
+                Some(sample) => format!("{sample}, {}", curve.name()),
+            };
+            self.curves.push(Styled {
+                curve,
+                name,
+                colour: colour(source.family, i, count, Ground::Light),
+                mark: mark(source.family, i),
+            });
+        }
+    }
+
+    /// The curves without their looks.
+    pub(super) fn plain(&self) -> impl Iterator<Item = &Curve> + Clone {
+        self.curves.iter().map(|styled| &styled.curve)
+    }
+
+    /// All readings that are shown.
+    pub(super) fn readings(&self) -> impl Iterator<Item = &Reading> {
+        self.plain().flat_map(|curve| &curve.readings)
+    }
+
+    /// Whether any reading is shown.
+    pub(super) fn measured(&self) -> bool {
+        self.readings().next().is_some()
+    }
+
+    /// Whether any reading has an error bar.
+    pub(super) fn error_bars(&self) -> bool {
+        self.readings().any(|reading| reading.sigma.is_some())
+    }
+
+    /// Whether the theory has a band.
+    pub(super) fn bands(&self) -> bool {
+        let mut theory = self.plain().flat_map(|curve| &curve.theory);
+        theory.any(|theory| theory.sigma.is_some())
+    }
 }
 
 /// At most so many of the items, evenly from the first to the last.
-fn evenly<T: Clone>(items: &[T], most: usize) -> Vec<T> {
+pub(super) fn evenly<T: Clone>(items: &[T], most: usize) -> Vec<T> {
     if items.len() <= most {
         return items.to_vec();
     }
@@ -191,75 +365,41 @@ fn evenly<T: Clone>(items: &[T], most: usize) -> Vec<T> {
         .collect()
 }
 
-fn shown_readings(incidence: &Incidence, readings: &[Measurement], brdf: &AnyBrdf) -> Vec<Reading> {
-    let of = |reading: &Measurement| {
-        Some(Reading {
-            theta_deg: reading.in_plane_theta()?.to_degrees(),
-            brdf: reading.brdf,
-            sigma: reading.sigma,
-            residual: reading.brdf - brdf.value(&reading.geometry().ok()?),
-        })
-    };
-    let mut shown: Vec<Reading> = incidence
-        .readings
-        .iter()
-        .filter_map(|&i| of(&readings[i]))
-        .collect();
-    shown.sort_by(|a, b| a.theta_deg.total_cmp(&b.theta_deg));
-    evenly(&shown, MOST_READINGS)
-}
-
-fn theory(brdf: &AnyBrdf, psi: f64, sigma: Sigma) -> Vec<Theory> {
-    let at = |theta_deg: f64| {
-        let geometry = Geometry::in_plane(psi, theta_deg.to_radians()).ok()?;
-        let sigma = sigma.map(|sigma| sigma(&geometry));
-        Some(Theory {
-            theta_deg,
-            brdf: brdf.value(&geometry),
-            sigma: sigma.filter(|sigma| *sigma > 0.0 && sigma.is_finite()),
-        })
-    };
-    theory_angles(psi.to_degrees())
-        .into_iter()
-        .filter_map(at)
-        .collect()
-}
-
-/// Half degrees, and closer and closer ones beside the mirror direction, where a peak may be
-/// narrower than any step. In degrees.
-fn theory_angles(psi_deg: f64) -> Vec<f64> {
-    let half_degrees = (-179..=179).map(|half| 0.5 * f64::from(half));
-    let beside = (0..40).map(|i| 10_f64.powf(-0.1 * f64::from(i)));
-    let offsets = beside.flat_map(|offset| [-offset, offset]).chain([0.0]);
-    let mut angles: Vec<f64> = half_degrees
-        .chain(offsets.map(|offset| offset - psi_deg))
-        .filter(|angle| angle.abs() <= THEORY_END_DEG)
-        .collect();
-    angles.sort_by(f64::total_cmp);
-    angles.dedup();
-    angles
-}
-
-fn left_out(readings: usize, in_plane: &[Incidence], shown: &[Incidence]) -> String {
+/// What is not shown of a sample; `known` incidences with `in_plane` readings could be.
+fn left_out(
+    source: &Source,
+    view: &View,
+    selection: &Selection,
+    known: usize,
+    in_plane: usize,
+) -> String {
     let mut sentences = String::new();
-    let count = |of: &[Incidence]| of.iter().map(|i| i.readings.len()).sum::<usize>();
-    let out_of_plane = readings - count(in_plane);
-    if out_of_plane > 0 {
+    let readings = source.measurements.readings().len();
+    let out_of_plane = readings.saturating_sub(in_plane);
+    if source.incidences.is_none() && out_of_plane > 0 {
         let verb = if out_of_plane == 1 { "is" } else { "are" };
         let count = counted(out_of_plane, "reading");
-        let _ = write!(
-            sentences,
-            " {count} out of the plane of incidence {verb} not shown."
-        );
+        let plane = if view.in_plane() {
+            "the plane of incidence"
+        } else {
+            "this plane"
+        };
+        let _ = write!(sentences, " {count} out of {plane} {verb} not shown.");
     }
-    if shown.len() < in_plane.len() {
-        let (some, all) = (shown.len(), in_plane.len());
+    let all = match source.incidences {
+        None => known,
+        Some(_) => source.measurements.incidences().len(),
+    };
+    let some = selection.traces.len();
+    if some < all {
         let _ = write!(sentences, " {some} of {all} incidences are shown.");
     }
-    if shown.iter().any(|i| i.readings.len() > MOST_READINGS) {
+    if selection.shown() < selection.all() {
+        let (some, all) = (selection.shown(), selection.all());
         let _ = write!(
             sentences,
-            " Of each incidence at most {MOST_READINGS} readings are shown."
+            " {some} of {all} readings are drawn: of those closer together than a mark is wide the \
+             first, the lowest and the highest."
         );
     }
     sentences
@@ -280,10 +420,10 @@ mod tests {
     #[test]
     fn the_mirror_direction_is_among_the_angles() {
         for psi_deg in [0.0, 33.3, 89.0] {
-            let angles = theory_angles(psi_deg);
+            let angles = theory_angles(Some(-psi_deg));
             assert!(angles.contains(&-psi_deg));
             assert!(angles.iter().all(|angle| angle.abs() <= THEORY_END_DEG));
         }
-        assert!(!theory_angles(90.0).is_empty());
+        assert!(!theory_angles(None).is_empty());
     }
 }

@@ -6,20 +6,39 @@ use super::PlotError;
 use super::axis::Axis;
 use super::canvas::{Canvas, Place, Stands};
 use super::clip::within;
-use super::style::{BAND, FINE_GRID, GRID, INK, Mark, TEXT, TITLE, colour, mark};
+use super::curves::{Styled, evenly};
+use super::palette::MarkShape;
+use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, TITLE, ink};
 use super::title::Title;
 
-/// Where the axes stand, and where the legend begins beside them.
-const LEFT: f64 = 86.0;
-const RIGHT: f64 = 762.0;
-const TOP: f64 = 66.0;
-const BOTTOM: f64 = 514.0;
+/// Where the legend begins, beside the axes.
 const LEGEND: f64 = 780.0;
+
+/// So many lines of a legend are for curves: the others are needed for what else is explained.
+const CURVE_LINES: usize = 16;
+
+/// Where the axes stand in the figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Area {
+    pub(super) left: f64,
+    pub(super) right: f64,
+    pub(super) top: f64,
+    pub(super) bottom: f64,
+}
+
+/// The axes of a figure with one plane.
+pub(super) const WHOLE: Area = Area {
+    left: 86.0,
+    right: 762.0,
+    top: 66.0,
+    bottom: 514.0,
+};
 
 /// A plane of two axes.
 pub(super) struct Frame {
     pub(super) x: Axis,
     pub(super) y: Axis,
+    pub(super) area: Area,
 }
 
 impl Frame {
@@ -28,12 +47,24 @@ impl Frame {
         Self {
             x: Axis::fixed(-90, 90, 15),
             y,
+            area: WHOLE,
         }
+    }
+
+    /// A place by its parts of the axes, from 0 to 1.
+    fn at(&self, x: f64, y: f64) -> Place {
+        let Area {
+            left,
+            right,
+            top,
+            bottom,
+        } = self.area;
+        (left + x * (right - left), bottom - y * (bottom - top))
     }
 
     /// Where a point is.
     pub(super) fn place(&self, (x, y): (f64, f64)) -> Place {
-        at(self.x.height(x), self.y.height(y))
+        self.at(self.x.height(x), self.y.height(y))
     }
 
     /// Whether a point is within both axes.
@@ -56,30 +87,44 @@ impl Frame {
         }
         for tick in &self.x.ticks {
             self.upright(canvas, tick.value, &GRID)?;
-            let place = (at(self.x.height(tick.value), 0.0).0, BOTTOM + 16.0);
+            let place = (
+                self.at(self.x.height(tick.value), 0.0).0,
+                self.area.bottom + 16.0,
+            );
             canvas.text(&tick.label, place, TEXT, Stands::Centred)?;
         }
         for tick in &self.y.ticks {
             self.level(canvas, tick.value, &GRID)?;
-            let place = (LEFT - 8.0, at(0.0, self.y.height(tick.value)).1);
+            let place = (
+                self.area.left - 8.0,
+                self.at(0.0, self.y.height(tick.value)).1,
+            );
             canvas.text(&tick.label, place, TEXT, Stands::Left)?;
         }
-        let border = [(0.0, 1.0), (0.0, 0.0), (1.0, 0.0)].map(|(x, y)| at(x, y));
+        let border = [(0.0, 1.0), (0.0, 0.0), (1.0, 0.0)].map(|(x, y)| self.at(x, y));
         canvas.line(&border, &INK, 1.0)?;
-        let middle = (0.5 * (LEFT + RIGHT), 0.5 * (TOP + BOTTOM));
+        let middle = (
+            0.5 * (self.area.left + self.area.right),
+            0.5 * (self.area.top + self.area.bottom),
+        );
         canvas.text(
             x_name,
-            (middle.0, BOTTOM + 42.0),
+            (middle.0, self.area.bottom + 42.0),
             TEXT + 1.0,
             Stands::Centred,
         )?;
-        canvas.text(y_name, (20.0, middle.1), TEXT + 1.0, Stands::Upwards)
+        canvas.text(
+            y_name,
+            (self.area.left - 66.0, middle.1),
+            TEXT + 1.0,
+            Stands::Upwards,
+        )
     }
 
     /// A thin line all over the plane at a value of x.
     fn upright(&self, canvas: &mut Canvas, x: f64, colour: &impl Color) -> Result<(), PlotError> {
         let x = self.x.height(x);
-        canvas.line(&[at(x, 0.0), at(x, 1.0)], colour, 1.0)
+        canvas.line(&[self.at(x, 0.0), self.at(x, 1.0)], colour, 1.0)
     }
 
     /// A thin line all over the plane at a value of y.
@@ -90,7 +135,7 @@ impl Frame {
         colour: &impl Color,
     ) -> Result<(), PlotError> {
         let y = self.y.height(y);
-        canvas.line(&[at(0.0, y), at(1.0, y)], colour, 1.0)
+        canvas.line(&[self.at(0.0, y), self.at(1.0, y)], colour, 1.0)
     }
 
     /// A dashed line all over the plane at a value of x.
@@ -101,7 +146,7 @@ impl Frame {
         colour: &impl Color,
     ) -> Result<(), PlotError> {
         let x = self.x.height(x);
-        canvas.dashes(at(x, 0.0), at(x, 1.0), colour, 1.0)
+        canvas.dashes(self.at(x, 0.0), self.at(x, 1.0), colour, 1.0)
     }
 
     /// A dashed line all over the plane at a value of y.
@@ -112,7 +157,7 @@ impl Frame {
         colour: &impl Color,
     ) -> Result<(), PlotError> {
         let y = self.y.height(y);
-        canvas.dashes(at(0.0, y), at(1.0, y), colour, 1.0)
+        canvas.dashes(self.at(0.0, y), self.at(1.0, y), colour, 1.0)
     }
 
     /// A line through points, cut where it leaves the axis.
@@ -127,7 +172,7 @@ impl Frame {
             .map(|(x, y)| (self.x.height(x), self.y.height(y)))
             .collect();
         for piece in within(&heights) {
-            let places: Vec<Place> = piece.into_iter().map(|(x, y)| at(x, y)).collect();
+            let places: Vec<Place> = piece.into_iter().map(|(x, y)| self.at(x, y)).collect();
             canvas.line(&places, colour, width)?;
         }
         Ok(())
@@ -143,7 +188,7 @@ impl Frame {
         let edge = |i: usize| {
             points
                 .iter()
-                .map(move |&(x, y)| at(self.x.height(x), self.y.height(y[i]).clamp(0.0, 1.0)))
+                .map(move |&(x, y)| self.at(self.x.height(x), self.y.height(y[i]).clamp(0.0, 1.0)))
         };
         let outline: Vec<Place> = edge(0).chain(edge(1).rev()).collect();
         canvas.area(&outline, &colour.mix(BAND))
@@ -169,15 +214,14 @@ impl Frame {
     }
 }
 
-fn at(x: f64, y: f64) -> Place {
-    (LEFT + x * (RIGHT - LEFT), BOTTOM - y * (BOTTOM - TOP))
-}
-
 /// The two lines of the title.
 pub(super) fn draw_title(canvas: &mut Canvas, title: &Title) -> Result<(), PlotError> {
     canvas.text(&title.sample, (20.0, 22.0), TITLE, Stands::Right)?;
     canvas.text(&title.details, (20.0, 45.0), TEXT, Stands::Right)
 }
+
+/// Letters of a line of the legend beside its key.
+const A_LINE: usize = 21;
 
 /// The legend, to the right of the axes.
 #[derive(Default)]
@@ -188,8 +232,8 @@ pub(super) struct Legend {
 /// What stands before the words of a legend.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Key {
-    /// The line of the `i`-th curve, with its mark where there are readings.
-    Curve(usize, bool),
+    /// The line of a curve, with its mark where there are readings.
+    Curve(RGBColor, Option<MarkShape>),
     /// A line in a colour.
     Line(RGBColor),
     /// A dashed line in a colour.
@@ -207,7 +251,7 @@ pub(super) enum Key {
 impl Legend {
     /// Adds a line, or for a longer text several.
     pub(super) fn add(&mut self, key: Key, text: &str) {
-        let longest = if matches!(key, Key::Note) { 27 } else { 21 };
+        let longest = if matches!(key, Key::Note) { 27 } else { A_LINE };
         let mut key = key;
         for line in wrapped(text, longest) {
             self.lines.push((key, line));
@@ -218,9 +262,24 @@ impl Legend {
         }
     }
 
+    /// Adds the curves, or evenly as many of them as there is room for, and says so.
+    pub(super) fn add_curves(&mut self, curves: &[Styled], measured: bool) {
+        let lines = curves.iter().map(|of| wrapped(&of.name, A_LINE).len());
+        let room = CURVE_LINES / lines.max().unwrap_or(1).max(1);
+        let named = evenly(curves, room.max(2));
+        for of in &named {
+            let mark = measured.then_some(of.mark);
+            self.add(Key::Curve(ink(of.colour), mark), &of.name);
+        }
+        if named.len() < curves.len() {
+            let words = format!("{} of {} curves are named", named.len(), curves.len());
+            self.add(Key::Note, &words);
+        }
+    }
+
     pub(super) fn draw(&self, canvas: &mut Canvas) -> Result<(), PlotError> {
         for (i, (key, text)) in self.lines.iter().enumerate() {
-            let y = TOP + 8.0 + 20.0 * i as f64;
+            let y = WHOLE.top + 8.0 + 20.0 * i as f64;
             let indent = if matches!(key, Key::Note) { 0.0 } else { 34.0 };
             key.draw(canvas, y)?;
             canvas.text(text, (LEGEND + indent, y), TEXT, Stands::Right)?;
@@ -234,18 +293,15 @@ impl Key {
         let (from, to) = ((LEGEND, y), (LEGEND + 26.0, y));
         let middle = (LEGEND + 13.0, y);
         match self {
-            Self::Curve(i, measured) => {
-                canvas.line(&[from, to], &colour(i), 2.0)?;
-                if measured {
-                    canvas.mark(middle, mark(i), colour(i))?;
-                }
-                Ok(())
+            Self::Curve(colour, mark) => {
+                canvas.line(&[from, to], &colour, 2.0)?;
+                mark.map_or(Ok(()), |mark| canvas.mark(middle, mark, colour))
             }
             Self::Line(colour) => canvas.line(&[from, to], &colour, 1.5),
             Self::Dashes(colour) => canvas.dashes(from, to, &colour, 1.0),
-            Self::Mark(colour) => canvas.mark(middle, Mark::Circle, colour),
+            Self::Mark(colour) => canvas.mark(middle, MarkShape::Circle, colour),
             Self::ErrorBar => {
-                canvas.mark(middle, Mark::Circle, INK)?;
+                canvas.mark(middle, MarkShape::Circle, INK)?;
                 let bar = [(middle.0, y - 8.0), (middle.0, y + 8.0)];
                 canvas.line(&bar, &INK, 1.0)
             }

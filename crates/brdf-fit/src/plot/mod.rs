@@ -19,23 +19,28 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The data flow one way: `curves` chooses what of the readings and of the theory is shown, a
-//! figure's file draws it in a `frame` on a `canvas`, `raster` makes a PNG of the SVG.
+//! The data flow one way: a `view` says how data are looked at, a `selection` which readings are
+//! shown, `curves` what of the theory stands beside them, for a screen as for a figure; a figure's
+//! file draws it in a `frame` on a `canvas`, `raster` makes a PNG of the SVG.
 
+mod arrangement;
 mod axis;
 mod canvas;
 mod clip;
 mod curves;
 mod frame;
+mod palette;
 mod paper;
 mod polar;
 mod profile;
 mod raster;
 mod reflectance;
 mod residuals;
+mod selection;
 mod style;
 mod theory;
 mod title;
+mod view;
 mod write;
 
 use std::io;
@@ -46,10 +51,15 @@ use brdf_core::{AnyBrdf, Geometry, GeometryError, ParameterError};
 use crate::measurement::Measurements;
 use crate::output::WriteError;
 use crate::stages::Fit;
-use curves::Curves;
+use curves::{Curves, Source};
 use title::Title;
 
+pub use arrangement::{Layer, figure_of};
+pub use curves::{Curve, Reading, Theory, curves, value_range};
+pub use palette::{FAMILIES, Ground, MarkShape, colour, mark};
 pub use paper::paper_figures;
+pub use selection::{Selection, Trace};
+pub use view::{Layout, Quantity, Scale, View};
 pub use write::write_figures;
 
 /// A figure, ready to be written or shown.
@@ -130,7 +140,15 @@ pub fn figures(
 ) -> Result<Vec<Figure>, PlotError> {
     let brdf = AnyBrdf::new(fit.model().family(), &fit.at())?;
     let title = Title::of(measurements, fit);
-    let curves = Curves::of(measurements, &brdf, sigma);
+    let source = Source {
+        name: None,
+        measurements,
+        brdf: &brdf,
+        sigma,
+        incidences: None,
+        family: 0,
+    };
+    let curves = Curves::of(&[source], &View::default());
     let mut figures = Vec::new();
     if !curves.curves.is_empty() {
         figures.push(theory::linear(&title, &curves)?);
@@ -325,7 +343,7 @@ mod tests {
         let many = (0..200_000).map(|i| reading(10.0, 8e-4 * f64::from(i) - 80.0, 0.1));
         let figures = figures_of(many.collect());
         assert!(figures[0].svg.len() < 1_000_000);
-        assert!(figures[0].caption.contains("at most 1000 readings"));
+        assert!(figures[0].caption.contains("readings are drawn"));
     }
 
     #[test]

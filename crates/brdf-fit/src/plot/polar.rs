@@ -5,12 +5,14 @@ use plotters::style::Color;
 use super::axis::Axis;
 use super::canvas::{Canvas, Place, Stands, drawn};
 use super::clip::within;
-use super::curves::{Curve, Curves};
+use super::curves::{Curves, Styled, values};
 use super::frame::draw_title;
-use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, colour, mark};
-use super::theory::{BRDF, legend};
+use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, ink};
+use super::theory::legend;
 use super::title::Title;
+use super::view::View;
 use super::{Figure, PlotError};
+use crate::read::Side;
 use crate::words::counted;
 
 /// Where the surface element lies, and how far from it the axis ends.
@@ -19,8 +21,7 @@ const RADIUS: f64 = 340.0;
 
 /// The figure of readings and theory.
 pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {
-    let negative = curves.readings().filter(|r| r.brdf < 0.0).count();
-    let note = (negative > 0).then(|| format!("{} < 0 not shown", counted(negative, "reading")));
+    let note = note_on_lost(curves);
     let sentence = note
         .as_deref()
         .map_or_else(String::new, |n| format!(" {n}."));
@@ -36,12 +37,18 @@ pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError
     })
 }
 
+/// What of the readings has no radius.
+pub(super) fn note_on_lost(curves: &Curves) -> Option<String> {
+    let negative = curves.readings().filter(|r| r.value < 0.0).count();
+    (negative > 0).then(|| format!("{} < 0 not shown", counted(negative, "reading")))
+}
+
 /// The drawing.
 pub(super) fn svg(title: &Title, curves: &Curves, note: Option<&str>) -> Result<String, PlotError> {
-    let radii = Axis::linear(curves.values().filter(|value| *value > 0.0));
+    let radii = Axis::linear(values(curves.plain()).filter(|value| *value > 0.0));
     drawn(|canvas| {
         draw_title(canvas, title)?;
-        draw_grid(canvas, &radii)?;
+        draw_grid(canvas, &radii, &curves.view)?;
         draw_curves(canvas, &radii, curves)?;
         legend(curves, note).draw(canvas)
     })
@@ -56,7 +63,7 @@ fn place(theta_deg: f64, radius: f64) -> Place {
     )
 }
 
-fn draw_grid(canvas: &mut Canvas, radii: &Axis) -> Result<(), PlotError> {
+fn draw_grid(canvas: &mut Canvas, radii: &Axis, view: &View) -> Result<(), PlotError> {
     for step in -6..=6 {
         let theta_deg = 15.0 * f64::from(step);
         let line = [place(theta_deg, 0.0), place(theta_deg, 1.0)];
@@ -83,7 +90,17 @@ fn draw_grid(canvas: &mut Canvas, radii: &Axis) -> Result<(), PlotError> {
     canvas.text("0", (CENTRE.0, CENTRE.1 + 14.0), TEXT, Stands::Centred)?;
     canvas.line(&[place(-90.0, 1.0), place(90.0, 1.0)], &INK, 1.0)?;
     let below = CENTRE.1 + 40.0;
-    for (text, x) in [("forward side", -0.5), (BRDF, 0.0), ("source side", 0.5)] {
+    let (left, right) = match view.theta_positive {
+        Side::Source => ("forward side", "source side"),
+        Side::Forward => ("source side", "forward side"),
+    };
+    let sides = if view.in_plane() {
+        (left, right)
+    } else {
+        ("", "")
+    };
+    let quantity = view.quantity.axis_name();
+    for (text, x) in [(sides.0, -0.5), (quantity, 0.0), (sides.1, 0.5)] {
         canvas.text(
             text,
             (CENTRE.0 + x * RADIUS, below),
@@ -92,7 +109,7 @@ fn draw_grid(canvas: &mut Canvas, radii: &Axis) -> Result<(), PlotError> {
         )?;
     }
     canvas.text(
-        "view angle theta / deg (source side positive)",
+        &view.theta_name(),
         (CENTRE.0, below + 24.0),
         TEXT + 1.0,
         Stands::Centred,
@@ -100,11 +117,17 @@ fn draw_grid(canvas: &mut Canvas, radii: &Axis) -> Result<(), PlotError> {
 }
 
 fn draw_curves(canvas: &mut Canvas, radii: &Axis, curves: &Curves) -> Result<(), PlotError> {
-    for (i, curve) in curves.curves.iter().enumerate() {
-        let mirror = -curve.psi_deg;
-        let dashes = colour(i).mix(0.6);
-        canvas.dashes(place(mirror, 0.0), place(mirror, 1.0), &dashes, 1.0)?;
-        for band in curve.bands() {
+    for styled in &curves.curves {
+        let colour = ink(styled.colour);
+        if let Some(mirror) = curves.view.mirror_deg(styled.curve.psi) {
+            canvas.dashes(
+                place(mirror, 0.0),
+                place(mirror, 1.0),
+                &colour.mix(0.6),
+                1.0,
+            )?;
+        }
+        for band in styled.curve.bands() {
             let edge = |i: usize| {
                 let place = move |&(theta, ends): &(f64, [f64; 2])| {
                     place(theta, radii.height(ends[i]).clamp(0.0, 1.0))
@@ -112,50 +135,46 @@ fn draw_curves(canvas: &mut Canvas, radii: &Axis, curves: &Curves) -> Result<(),
                 band.iter().map(place)
             };
             let outline: Vec<Place> = edge(0).chain(edge(1).rev()).collect();
-            canvas.area(&outline, &colour(i).mix(BAND))?;
+            canvas.area(&outline, &colour.mix(BAND))?;
         }
     }
-    for (i, curve) in curves.curves.iter().enumerate() {
-        draw_readings(canvas, radii, curve, i)?;
+    for styled in &curves.curves {
+        draw_readings(canvas, radii, styled)?;
     }
-    for (i, curve) in curves.curves.iter().enumerate() {
-        let line = curve.theory.iter().map(|t| (t.theta_deg, t.brdf));
-        draw_line(canvas, radii, line, i, 1.8)?;
+    for styled in &curves.curves {
+        let line = styled.curve.theory.iter().map(|t| (t.theta_deg, t.value));
+        draw_line(canvas, radii, line, styled, 1.8)?;
     }
     Ok(())
 }
 
-fn draw_readings(
-    canvas: &mut Canvas,
-    radii: &Axis,
-    curve: &Curve,
-    i: usize,
-) -> Result<(), PlotError> {
-    for reading in &curve.readings {
-        let (theta, brdf) = (reading.theta_deg, reading.brdf);
+fn draw_readings(canvas: &mut Canvas, radii: &Axis, styled: &Styled) -> Result<(), PlotError> {
+    for reading in &styled.curve.readings {
+        let (theta, value) = (reading.theta_deg, reading.value);
         if let Some(sigma) = reading.sigma {
-            let bar = [(theta, brdf - sigma), (theta, brdf + sigma)];
-            draw_line(canvas, radii, bar.into_iter(), i, 1.0)?;
+            let bar = [(theta, value - sigma), (theta, value + sigma)];
+            draw_line(canvas, radii, bar.into_iter(), styled, 1.0)?;
         }
-        if radii.contains(brdf) {
-            canvas.mark(place(theta, radii.height(brdf)), mark(i), colour(i))?;
+        if radii.contains(value) {
+            let at = place(theta, radii.height(value));
+            canvas.mark(at, styled.mark, ink(styled.colour))?;
         }
     }
     Ok(())
 }
 
-/// A line through points of view angle and f_r, cut at the axis.
+/// A line through points of view angle and value, cut at the axis.
 fn draw_line(
     canvas: &mut Canvas,
     radii: &Axis,
     points: impl Iterator<Item = (f64, f64)>,
-    i: usize,
+    of: &Styled,
     width: f64,
 ) -> Result<(), PlotError> {
-    let line: Vec<(f64, f64)> = points.map(|(t, brdf)| (t, radii.height(brdf))).collect();
+    let line: Vec<(f64, f64)> = points.map(|(t, value)| (t, radii.height(value))).collect();
     for piece in within(&line) {
         let places: Vec<Place> = piece.into_iter().map(|(t, r)| place(t, r)).collect();
-        canvas.line(&places, &colour(i), width)?;
+        canvas.line(&places, &ink(of.colour), width)?;
     }
     Ok(())
 }

@@ -2,8 +2,9 @@
 
 use super::axis::Axis;
 use super::canvas::{Canvas, drawn};
-use super::frame::{Frame, Key, Legend, draw_title};
-use super::style::{Mark, POINTED_OUT, colour};
+use super::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use super::palette::MarkShape;
+use super::style::{MAIN, POINTED_OUT};
 use super::title::{Title, short};
 use super::{Figure, PlotError};
 use crate::stages::Fit;
@@ -38,7 +39,7 @@ pub(super) fn figure(title: &Title, fit: &Fit) -> Result<Option<Figure>, PlotErr
     let (Some(x), Some(y)) = (k1, error) else {
         return Ok(None);
     };
-    let frame = Frame { x, y };
+    let frame = Frame { x, y, area: WHOLE };
     Ok(Some(Figure {
         name: "profile-k1".to_owned(),
         caption: format!(
@@ -63,12 +64,12 @@ fn draw(
     if frame.x.contains(k1) {
         frame.upright_dashes(canvas, k1, &POINTED_OUT)?;
     }
-    frame.line(canvas, points.iter().copied(), &colour(0), 1.8)?;
+    frame.line(canvas, points.iter().copied(), &MAIN, 1.8)?;
     if frame.contains((k1, error)) {
-        canvas.mark(frame.place((k1, error)), Mark::Circle, POINTED_OUT)?;
+        canvas.mark(frame.place((k1, error)), MarkShape::Circle, POINTED_OUT)?;
     }
     let mut legend = Legend::default();
-    legend.add(Key::Line(colour(0)), "lowest E at k1");
+    legend.add(Key::Line(MAIN), "lowest E at k1");
     legend.add(Key::Mark(POINTED_OUT), &format!("fit: k1 = {}", short(k1)));
     legend.draw(canvas)
 }

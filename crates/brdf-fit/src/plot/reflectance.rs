@@ -4,8 +4,8 @@ use brdf_core::AnyBrdf;
 
 use super::axis::Axis;
 use super::canvas::{Canvas, drawn};
-use super::frame::{Frame, Key, Legend, draw_title};
-use super::style::{INK, POINTED_OUT, colour};
+use super::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use super::style::{INK, MAIN, POINTED_OUT};
 use super::title::{Title, short};
 use super::{Figure, PlotError};
 use crate::stages::Fit;
@@ -49,6 +49,7 @@ pub(super) fn figure(title: &Title, brdf: &AnyBrdf, fit: &Fit) -> Result<Figure,
         frame: Frame {
             x: Axis::fixed(0, 90, 10),
             y,
+            area: WHOLE,
         },
     };
     Ok(Figure {
@@ -88,7 +89,7 @@ fn draw(canvas: &mut Canvas, title: &Title, shown: &Shown) -> Result<(), PlotErr
         "hemispherical reflectance rho",
     )?;
     let mut legend = Legend::default();
-    legend.add(Key::Line(colour(0)), "rho(psi)");
+    legend.add(Key::Line(MAIN), "rho(psi)");
     legend.add(Key::Dashes(INK), &format!("kD = {}", short(shown.kd)));
     frame.level_dashes(canvas, shown.kd, &INK)?;
     if frame.y.high() >= 1.0 {
@@ -104,6 +105,6 @@ fn draw(canvas: &mut Canvas, title: &Title, shown: &Shown) -> Result<(), PlotErr
             &format!("rho > 1 from {} deg", tenths(deg)),
         );
     }
-    frame.line(canvas, shown.rho.iter().copied(), &colour(0), 1.8)?;
+    frame.line(canvas, shown.rho.iter().copied(), &MAIN, 1.8)?;
     legend.draw(canvas)
 }

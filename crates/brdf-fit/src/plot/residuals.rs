@@ -4,20 +4,20 @@ use plotters::style::Color;
 
 use super::axis::Axis;
 use super::canvas::{Canvas, drawn};
-use super::curves::Curves;
+use super::curves::{Curves, Styled};
 use super::frame::{Frame, Key, Legend, draw_title};
-use super::style::{INK, colour, mark};
-use super::theory::THETA;
+use super::style::{INK, ink};
+use super::theory::draw_mirror;
 use super::title::Title;
+use super::view::View;
 use super::{Figure, PlotError};
+
+/// The name of the axis of residuals.
+pub(super) const RESIDUAL: &str = "measured - theory / (1/sr)";
 
 /// The residuals.
 pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {
-    let values = curves.readings().flat_map(|reading| {
-        let sigma = reading.sigma.unwrap_or(0.0);
-        [reading.residual - sigma, reading.residual + sigma]
-    });
-    let frame = Frame::over_theta(Axis::linear(values));
+    let frame = Frame::over_theta(axis(curves));
     Ok(Figure {
         name: "residuals".to_owned(),
         caption: format!(
@@ -29,6 +29,14 @@ pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError
     })
 }
 
+/// The axis of the residuals with their error bars.
+pub(super) fn axis(curves: &Curves) -> Axis {
+    Axis::linear(curves.readings().flat_map(|reading| {
+        let (residual, sigma) = (reading.residual(), reading.sigma.unwrap_or(0.0));
+        [residual - sigma, residual + sigma]
+    }))
+}
+
 fn draw(
     canvas: &mut Canvas,
     frame: &Frame,
@@ -36,28 +44,42 @@ fn draw(
     curves: &Curves,
 ) -> Result<(), PlotError> {
     draw_title(canvas, title)?;
-    frame.draw(canvas, THETA, "measured - theory / (1/sr)")?;
-    frame.level(canvas, 0.0, &INK)?;
+    frame.draw(canvas, &curves.view.theta_name(), RESIDUAL)?;
+    let all: Vec<&Styled> = curves.curves.iter().collect();
+    draw_residuals(canvas, frame, &all, &curves.view)?;
     let mut legend = Legend::default();
-    for (i, curve) in curves.curves.iter().enumerate() {
-        frame.upright_dashes(canvas, -curve.psi_deg, &colour(i).mix(0.6))?;
-        let line = curve.readings.iter().map(|r| (r.theta_deg, r.residual));
-        frame.line(canvas, line, &colour(i).mix(0.5), 1.0)?;
-        for reading in &curve.readings {
-            let (theta, residual) = (reading.theta_deg, reading.residual);
-            if let Some(sigma) = reading.sigma {
-                let ends = (residual - sigma, residual + sigma);
-                frame.error_bar(canvas, theta, ends, colour(i))?;
-            }
-            if frame.contains((theta, residual)) {
-                canvas.mark(frame.place((theta, residual)), mark(i), colour(i))?;
-            }
-        }
-        legend.add(Key::Curve(i, true), &curve.name());
-    }
+    legend.add_curves(&curves.curves, true);
     if curves.error_bars() {
         legend.add(Key::ErrorBar, "1 sigma of a reading");
     }
     legend.add(Key::Dashes(INK), "mirror direction");
     legend.draw(canvas)
+}
+
+/// The residuals within the axes.
+pub(super) fn draw_residuals(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    curves: &[&Styled],
+    view: &View,
+) -> Result<(), PlotError> {
+    frame.level(canvas, 0.0, &INK)?;
+    for styled in curves {
+        let colour = ink(styled.colour);
+        draw_mirror(canvas, frame, styled, view)?;
+        let readings = &styled.curve.readings;
+        let line = readings.iter().map(|r| (r.theta_deg, r.residual()));
+        frame.line(canvas, line, &colour.mix(0.5), 1.0)?;
+        for reading in readings {
+            let (theta, residual) = (reading.theta_deg, reading.residual());
+            if let Some(sigma) = reading.sigma {
+                let ends = (residual - sigma, residual + sigma);
+                frame.error_bar(canvas, theta, ends, colour)?;
+            }
+            if frame.contains((theta, residual)) {
+                canvas.mark(frame.place((theta, residual)), styled.mark, colour)?;
+            }
+        }
+    }
+    Ok(())
 }

@@ -4,26 +4,17 @@ use plotters::style::Color;
 
 use super::axis::Axis;
 use super::canvas::{Canvas, drawn};
-use super::curves::{Curve, Curves};
+use super::curves::{Curves, DECADES, Styled, lower_ends, values};
 use super::frame::{Frame, Key, Legend, draw_title};
-use super::style::{INK, colour, mark};
+use super::style::{INK, ink};
 use super::title::Title;
+use super::view::{Scale, View};
 use super::{Figure, PlotError};
 use crate::words::counted;
 
-/// The name of the axis of view angles.
-pub(super) const THETA: &str = "view angle theta / deg (source side positive)";
-
-/// The name of the axis of f_r.
-pub(super) const BRDF: &str = "BRDF / (1/sr)";
-
-/// A logarithmic axis has at the most so many decades: a single reading of next to nothing shall
-/// not squeeze the others.
-const DECADES: i32 = 6;
-
 /// On a linear axis.
 pub(super) fn linear(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {
-    let axis = Axis::linear(curves.values().chain(curves.lower_ends()));
+    let axis = linear_axis(curves);
     Ok(Figure {
         name: "theory-linear".to_owned(),
         caption: caption(title, curves, "linear", ""),
@@ -33,7 +24,7 @@ pub(super) fn linear(title: &Title, curves: &Curves) -> Result<Figure, PlotError
 
 /// On a logarithmic axis; `None` where nothing is positive.
 pub(super) fn logarithmic(title: &Title, curves: &Curves) -> Result<Option<Figure>, PlotError> {
-    let Some(axis) = Axis::logarithmic(curves.values(), DECADES) else {
+    let Some(axis) = Axis::logarithmic(values(curves.plain()), DECADES) else {
         return Ok(None);
     };
     let note = note_on_lost(curves, &axis);
@@ -49,9 +40,20 @@ pub(super) fn logarithmic(title: &Title, curves: &Curves) -> Result<Option<Figur
 
 /// The drawing of the theory alone on a logarithmic axis.
 pub(super) fn of_theory(title: &Title, curves: &Curves, note: &str) -> Result<String, PlotError> {
-    let axis = Axis::logarithmic(curves.values(), DECADES);
-    let axis = axis.unwrap_or_else(|| Axis::linear(curves.values()));
-    svg(title, curves, axis, Some(note))
+    svg(title, curves, axis(curves, Scale::Logarithmic), Some(note))
+}
+
+fn linear_axis(curves: &Curves) -> Axis {
+    Axis::linear(values(curves.plain()).chain(lower_ends(curves.plain())))
+}
+
+/// The axis of a scale; a linear one where a logarithmic one has nothing to show.
+pub(super) fn axis(curves: &Curves, scale: Scale) -> Axis {
+    let logarithmic = match scale {
+        Scale::Linear => None,
+        Scale::Logarithmic => Axis::logarithmic(values(curves.plain()), DECADES),
+    };
+    logarithmic.unwrap_or_else(|| linear_axis(curves))
 }
 
 fn svg(title: &Title, curves: &Curves, y: Axis, note: Option<&str>) -> Result<String, PlotError> {
@@ -78,10 +80,10 @@ fn caption(title: &Title, curves: &Curves, axis: &str, more: &str) -> String {
 }
 
 /// What of the readings a logarithmic axis cannot show.
-fn note_on_lost(curves: &Curves, axis: &Axis) -> Option<String> {
-    let count = |lost: &dyn Fn(f64) -> bool| curves.readings().filter(|r| lost(r.brdf)).count();
-    let not_positive = count(&|brdf| brdf <= 0.0);
-    let below = count(&|brdf| brdf > 0.0 && brdf < axis.low());
+pub(super) fn note_on_lost(curves: &Curves, axis: &Axis) -> Option<String> {
+    let count = |lost: &dyn Fn(f64) -> bool| curves.readings().filter(|r| lost(r.value)).count();
+    let not_positive = count(&|value| value <= 0.0);
+    let below = count(&|value| value > 0.0 && value < axis.low());
     let notes = [(not_positive, "<= 0"), (below, "below the axis")]
         .into_iter()
         .filter(|(count, _)| *count > 0)
@@ -98,37 +100,59 @@ fn draw(
     note: Option<&str>,
 ) -> Result<(), PlotError> {
     draw_title(canvas, title)?;
-    frame.draw(canvas, THETA, BRDF)?;
-    for (i, curve) in curves.curves.iter().enumerate() {
-        frame.upright_dashes(canvas, -curve.psi_deg, &colour(i).mix(0.6))?;
-        for band in curve.bands() {
-            frame.band(canvas, &band, colour(i))?;
-        }
-    }
-    for (i, curve) in curves.curves.iter().enumerate() {
-        draw_readings(canvas, frame, curve, i)?;
-    }
-    // Above the readings, which may be so dense that they would hide the lines.
-    for (i, curve) in curves.curves.iter().enumerate() {
-        let line = curve.theory.iter().map(|t| (t.theta_deg, t.brdf));
-        frame.line(canvas, line, &colour(i), 1.8)?;
-    }
+    let names = (curves.view.theta_name(), curves.view.quantity.axis_name());
+    frame.draw(canvas, &names.0, names.1)?;
+    let all: Vec<&Styled> = curves.curves.iter().collect();
+    draw_curves(canvas, frame, &all, &curves.view)?;
     legend(curves, note).draw(canvas)
 }
 
-fn draw_readings(
+/// Mirror directions, bands, readings and theory within the axes.
+pub(super) fn draw_curves(
     canvas: &mut Canvas,
     frame: &Frame,
-    curve: &Curve,
-    i: usize,
+    curves: &[&Styled],
+    view: &View,
 ) -> Result<(), PlotError> {
-    for reading in &curve.readings {
-        let (theta, brdf) = (reading.theta_deg, reading.brdf);
-        if let Some(sigma) = reading.sigma {
-            frame.error_bar(canvas, theta, (brdf - sigma, brdf + sigma), colour(i))?;
+    for styled in curves {
+        draw_mirror(canvas, frame, styled, view)?;
+        for band in styled.curve.bands() {
+            frame.band(canvas, &band, ink(styled.colour))?;
         }
-        if frame.contains((theta, brdf)) {
-            canvas.mark(frame.place((theta, brdf)), mark(i), colour(i))?;
+    }
+    for styled in curves {
+        draw_readings(canvas, frame, styled)?;
+    }
+    // Above the readings, which may be so dense that they would hide the lines.
+    for styled in curves {
+        let line = styled.curve.theory.iter().map(|t| (t.theta_deg, t.value));
+        frame.line(canvas, line, &ink(styled.colour), 1.8)?;
+    }
+    Ok(())
+}
+
+/// The mirror direction of a curve, where the view has it.
+pub(super) fn draw_mirror(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    styled: &Styled,
+    view: &View,
+) -> Result<(), PlotError> {
+    match view.mirror_deg(styled.curve.psi) {
+        Some(mirror) => frame.upright_dashes(canvas, mirror, &ink(styled.colour).mix(0.6)),
+        None => Ok(()),
+    }
+}
+
+fn draw_readings(canvas: &mut Canvas, frame: &Frame, styled: &Styled) -> Result<(), PlotError> {
+    let colour = ink(styled.colour);
+    for reading in &styled.curve.readings {
+        let (theta, value) = (reading.theta_deg, reading.value);
+        if let Some(sigma) = reading.sigma {
+            frame.error_bar(canvas, theta, (value - sigma, value + sigma), colour)?;
+        }
+        if frame.contains((theta, value)) {
+            canvas.mark(frame.place((theta, value)), styled.mark, colour)?;
         }
     }
     Ok(())
@@ -137,9 +161,7 @@ fn draw_readings(
 /// The legend of the figures of readings and theory.
 pub(super) fn legend(curves: &Curves, note: Option<&str>) -> Legend {
     let mut legend = Legend::default();
-    for (i, curve) in curves.curves.iter().enumerate() {
-        legend.add(Key::Curve(i, curves.measured()), &curve.name());
-    }
+    legend.add_curves(&curves.curves, curves.measured());
     if curves.measured() {
         legend.add(Key::Mark(INK), "reading");
         legend.add(Key::Line(INK), "theory");
@@ -150,7 +172,9 @@ pub(super) fn legend(curves: &Curves, note: Option<&str>) -> Legend {
     if curves.bands() {
         legend.add(Key::Band, "1 sigma of theory");
     }
-    legend.add(Key::Dashes(INK), "mirror direction");
+    if curves.view.in_plane() {
+        legend.add(Key::Dashes(INK), "mirror direction");
+    }
     if let Some(note) = note {
         legend.add(Key::Note, note);
     }

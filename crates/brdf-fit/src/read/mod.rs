@@ -5,8 +5,11 @@ mod fields;
 
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
+
 /// Which side of the surface normal, or which azimuth, a file calls positive or zero.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Side {
     /// The source's side: the model's convention.
     #[default]

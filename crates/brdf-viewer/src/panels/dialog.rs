@@ -78,19 +78,28 @@ fn show_about(ui: &mut Ui, intents: &mut Vec<Intent>) {
             ("Drag".to_owned(), "Pan the plot"),
             ("Ctrl+scroll".to_owned(), "Zoom the plot"),
             ("Right drag".to_owned(), "Zoom into a rectangle"),
-            ("Double click".to_owned(), "Reset a slider, or the zoom of a plot"),
-            ("Ctrl+plus, Ctrl+minus".to_owned(), "Everything larger, smaller"),
+            (
+                "Double click".to_owned(),
+                "Reset a slider, or the zoom of a plot",
+            ),
+            (
+                "Ctrl+plus, Ctrl+minus".to_owned(),
+                "Everything larger, smaller",
+            ),
         ])
         .collect();
-    Grid::new("keys").num_columns(4).striped(true).show(ui, |ui| {
-        for pair in keys.chunks(2) {
-            for (key, name) in pair {
-                ui.strong(key);
-                ui.label(*name);
+    Grid::new("keys")
+        .num_columns(4)
+        .striped(true)
+        .show(ui, |ui| {
+            for pair in keys.chunks(2) {
+                for (key, name) in pair {
+                    ui.strong(key);
+                    ui.label(*name);
+                }
+                ui.end_row();
             }
-            ui.end_row();
-        }
-    });
+        });
     if ui.button("Close").clicked() {
         intents.push(Intent::CloseDialog);
     }

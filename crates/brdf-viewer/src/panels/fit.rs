@@ -50,7 +50,12 @@ fn show_run(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
         let words = match run.progress {
             Progress::Cancelled => format!("cancelled: {} of {} were done", run.done, run.jobs),
             _ if run.failed.is_empty() => format!("{} of {} fitted", run.done, run.jobs),
-            _ => format!("{} of {} fitted, {} failed", run.done, run.jobs, run.failed.len()),
+            _ => format!(
+                "{} of {} fitted, {} failed",
+                run.done,
+                run.jobs,
+                run.failed.len()
+            ),
         };
         ui.label(words);
         return;
@@ -60,31 +65,43 @@ fn show_run(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
         if ui.add_enabled(!cancelling, Button::new("Cancel")).clicked() {
             intents.push(Intent::Do(Command::Cancel));
         }
-        let phase = run.phase.map_or_else(String::new, |phase| phase.to_string());
+        let phase = run
+            .phase
+            .map_or_else(String::new, |phase| phase.to_string());
         let iteration = run.points.last().map_or(0, |point| point.iteration);
-        let words = format!("{} of {}: {phase}, iteration {iteration}", run.done, run.jobs);
+        let words = format!(
+            "{} of {}: {phase}, iteration {iteration}",
+            run.done, run.jobs
+        );
         let part = run.done as f32 / run.jobs.max(1) as f32;
         ui.add(ProgressBar::new(part).text(words));
     });
 }
 
 fn show_settings(ui: &mut Ui, choice: &mut FitChoice) {
-    Grid::new("settings").num_columns(2).spacing([8.0, 4.0]).show(ui, |ui| {
-        show_method(ui, "Method of stage 1", &mut choice.stage1);
-        show_method(ui, "Method of stage 2", &mut choice.stage2);
-        let label = ui.label("Stage 1 up to");
-        ui.add(DragValue::new(&mut choice.limit_deg).range(0.0..=90.0).suffix("°"))
+    Grid::new("settings")
+        .num_columns(2)
+        .spacing([8.0, 4.0])
+        .show(ui, |ui| {
+            show_method(ui, "Method of stage 1", &mut choice.stage1);
+            show_method(ui, "Method of stage 2", &mut choice.stage2);
+            let label = ui.label("Stage 1 up to");
+            ui.add(
+                DragValue::new(&mut choice.limit_deg)
+                    .range(0.0..=90.0)
+                    .suffix("°"),
+            )
             .labelled_by(label.id);
-        ui.end_row();
-        show_weights(ui, &mut choice.weights);
-        show_loss(ui, &mut choice.robust);
-        ui.checkbox(&mut choice.energy, "rho <= 1 up to");
-        let limit = &mut choice.energy_limit_deg;
-        let limit = DragValue::new(limit).range(0.0..=89.9).suffix("°");
-        let response = ui.add_enabled(choice.energy, limit);
-        super::named(response, egui::Role::SpinButton, "limit of rho <= 1");
-        ui.end_row();
-    });
+            ui.end_row();
+            show_weights(ui, &mut choice.weights);
+            show_loss(ui, &mut choice.robust);
+            ui.checkbox(&mut choice.energy, "rho <= 1 up to");
+            let limit = &mut choice.energy_limit_deg;
+            let limit = DragValue::new(limit).range(0.0..=89.9).suffix("°");
+            let response = ui.add_enabled(choice.energy, limit);
+            super::named(response, egui::Role::SpinButton, "limit of rho <= 1");
+            ui.end_row();
+        });
     ui.checkbox(&mut choice.compare, "Fit GGX and Beckmann beside it");
 }
 

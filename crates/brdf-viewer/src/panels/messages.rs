@@ -15,13 +15,15 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         return;
     }
     Panel::top("messages").resizable(false).show(ui, |ui| {
-        ScrollArea::vertical().max_height(MOST_HEIGHT).show(ui, |ui| {
-            for (i, message) in state.messages.iter().enumerate().rev() {
-                if show_message(ui, message) {
-                    intents.push(Intent::Dismiss(i));
+        ScrollArea::vertical()
+            .max_height(MOST_HEIGHT)
+            .show(ui, |ui| {
+                for (i, message) in state.messages.iter().enumerate().rev() {
+                    if show_message(ui, message) {
+                        intents.push(Intent::Dismiss(i));
+                    }
                 }
-            }
-        });
+            });
     });
 }
 
@@ -31,7 +33,9 @@ fn show_message(ui: &mut Ui, message: &Message) -> bool {
         Severity::Error => ("Error", ui.visuals().error_fg_color),
         Severity::Note => ("Note", ui.visuals().warn_fg_color),
     };
-    let frame = Frame::group(ui.style()).stroke((1.0, colour)).fill(Color32::TRANSPARENT);
+    let frame = Frame::group(ui.style())
+        .stroke((1.0, colour))
+        .fill(Color32::TRANSPARENT);
     let shown = frame.show(ui, |ui| {
         ui.horizontal_top(|ui| {
             let gone = ui.button("Dismiss").clicked();

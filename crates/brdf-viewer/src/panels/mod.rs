@@ -11,7 +11,7 @@ pub mod samples;
 pub mod status;
 pub mod theme;
 
-use egui::{Response, WidgetInfo, Role};
+use egui::{Response, Role, WidgetInfo};
 
 /// Gives a control its accessible name where its picture has no words.
 pub(crate) fn named(response: Response, kind: Role, name: &str) -> Response {

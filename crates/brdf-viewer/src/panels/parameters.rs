@@ -3,7 +3,9 @@
 use brdf_core::brdf::N_DOMAIN;
 use brdf_fit::model::{Model, Parameter};
 use brdf_fit::words::digits;
-use egui::{ComboBox, DragValue, Grid, Id, Panel, ScrollArea, Sense, Slider, SliderClamping, Ui, Role};
+use egui::{
+    ComboBox, DragValue, Grid, Id, Panel, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
+};
 
 use super::{fit, named};
 use crate::intent::{Command, Intent};
@@ -15,7 +17,9 @@ use crate::state::sample::{Knobs, Sample};
 /// anything was turned.
 pub fn show(ui: &mut Ui, state: &mut State) -> bool {
     let mut turned = false;
-    let panel = Panel::right("parameters").default_size(325.0).size_range(300.0..=460.0);
+    let panel = Panel::right("parameters")
+        .default_size(325.0)
+        .size_range(300.0..=460.0);
     panel.show(ui, |ui| {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             let mut intents = Vec::new();
@@ -48,25 +52,35 @@ fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Int
     let mut model = knobs.model;
     let combo = ComboBox::from_id_salt("model").width(280.0);
     let text = |model: Model| format!("{model}: {}", model.description());
-    let shown = combo.selected_text(text(model)).truncate().show_ui(ui, |ui| {
-        for other in Model::ALL {
-            ui.selectable_value(&mut model, other, text(other));
-        }
-    });
+    let shown = combo
+        .selected_text(text(model))
+        .truncate()
+        .show_ui(ui, |ui| {
+            for other in Model::ALL {
+                ui.selectable_value(&mut model, other, text(other));
+            }
+        });
     named(shown.response, Role::ComboBox, "model");
     if model != knobs.model {
         intents.push(Intent::Model(model));
     }
     let fitted = sample.scan().fitted_knobs();
-    Grid::new("parameters").num_columns(5).spacing([6.0, 5.0]).show(ui, |ui| {
-        for parameter in knobs.parameters() {
-            show_parameter(ui, parameter, &knobs, &fitted, intents);
-            ui.end_row();
-        }
-    });
+    Grid::new("parameters")
+        .num_columns(5)
+        .spacing([6.0, 5.0])
+        .show(ui, |ui| {
+            for parameter in knobs.parameters() {
+                show_parameter(ui, parameter, &knobs, &fitted, intents);
+                ui.end_row();
+            }
+        });
     ui.horizontal(|ui| {
         for command in [Command::Undo, Command::Redo, Command::ResetAll] {
-            let name = if command == Command::ResetAll { "Reset all" } else { command.name() };
+            let name = if command == Command::ResetAll {
+                "Reset all"
+            } else {
+                command.name()
+            };
             let enabled = state.is_enabled(command);
             if ui.add_enabled(enabled, egui::Button::new(name)).clicked() {
                 intents.push(Intent::Do(command));
@@ -92,7 +106,11 @@ fn show_parameter(
     let slider = slider(parameter, &mut slid, reset).show_value(false);
     let slider = ui.add(slider).labelled_by(label.id);
     // A slider does not feel clicks: this lies over it and does.
-    let over = ui.interact(slider.rect, Id::unique(("reset", parameter as u8)), Sense::click());
+    let over = ui.interact(
+        slider.rect,
+        Id::unique(("reset", parameter as u8)),
+        Sense::click(),
+    );
     let over = named(over, Role::Unknown, &format!("slider of {parameter}"));
     let mut typed = value;
     number(ui, parameter, &mut typed).labelled_by(label.id);

@@ -99,7 +99,11 @@ fn show_convergence(ui: &mut Ui, state: &State) {
             let colour = theme::colour(0, i, 2, ground);
             let name = phase.to_string();
             plot_ui.line(Line::new(name.clone(), PlotPoints::from(points.clone())).color(colour));
-            plot_ui.points(Points::new(name, PlotPoints::from(points)).radius(2.5).color(colour));
+            plot_ui.points(
+                Points::new(name, PlotPoints::from(points))
+                    .radius(2.5)
+                    .color(colour),
+            );
         }
     });
     named_plot(&response, "plot of E against iteration");
@@ -122,7 +126,11 @@ fn show_profile(ui: &mut Ui, scan: &Scan) {
     let here = log(scan.knobs.at.k1);
     let weak = ui.visuals().weak_text_color();
     let response = plot.show(ui, |plot_ui| {
-        plot_ui.line(Line::new("profile", PlotPoints::from(points)).color(colour).width(1.8));
+        plot_ui.line(
+            Line::new("profile", PlotPoints::from(points))
+                .color(colour)
+                .width(1.8),
+        );
         if let Some(k1) = here {
             plot_ui.vline(VLine::new("k1", k1).color(weak));
         }
@@ -142,7 +150,11 @@ fn show_reflectance(ui: &mut Ui, state: &State, sample: &Sample) {
         .include_y(0.0);
     let above_one = points.iter().any(|[_, rho]| *rho > 1.0);
     let response = plot.show(ui, |plot_ui| {
-        plot_ui.line(Line::new("rho", PlotPoints::from(points)).color(colour).width(1.8));
+        plot_ui.line(
+            Line::new("rho", PlotPoints::from(points))
+                .color(colour)
+                .width(1.8),
+        );
         if above_one {
             plot_ui.hline(egui_plot::HLine::new("1", 1.0).color(limit));
         }

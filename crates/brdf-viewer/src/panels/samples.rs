@@ -2,7 +2,7 @@
 //! the theory describes it.
 
 use brdf_fit::words::{counted, digits};
-use egui::{ComboBox, Grid, Panel, RichText, ScrollArea, Ui, Role, vec2};
+use egui::{ComboBox, Grid, Panel, RichText, Role, ScrollArea, Ui, vec2};
 
 use super::{degrees, named, theme};
 use crate::intent::Intent;
@@ -11,7 +11,9 @@ use crate::state::sample::Sample;
 
 /// Draws the samples.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
-    let panel = Panel::left("samples").default_size(215.0).size_range(170.0..=380.0);
+    let panel = Panel::left("samples")
+        .default_size(215.0)
+        .size_range(170.0..=380.0);
     panel.show(ui, |ui| {
         ui.add_space(4.0);
         ui.strong("Samples");
@@ -32,9 +34,7 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
         let mut visible = sample.visible;
         let name = format!("show {}", sample.name);
         let response = ui.checkbox(&mut visible, "");
-        response.widget_info(|| {
-            egui::WidgetInfo::selected(Role::CheckBox, true, visible, &name)
-        });
+        response.widget_info(|| egui::WidgetInfo::selected(Role::CheckBox, true, visible, &name));
         if response.on_hover_text(name).changed() {
             intents.push(Intent::ShowSample(sample.id, visible));
         }
@@ -46,7 +46,11 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
             }
             let colour = theme::colour(sample.family, 0, 1, theme::ground(ui.ctx()));
             let name = RichText::new(&sample.name);
-            let name = if state.samples.len() > 1 { name.color(colour) } else { name };
+            let name = if state.samples.len() > 1 {
+                name.color(colour)
+            } else {
+                name
+            };
             let button = egui::Button::selectable(active, name).truncate();
             let full = ui.available_width();
             let response = ui.add_sized(vec2(full, ui.spacing().interact_size.y), button);
@@ -76,37 +80,44 @@ fn show_scan(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Inte
         }
     });
     let errors = state.shown.errors(sample.scan_id()).and_then(Result::ok);
-    let count = scan.incidences.iter().filter(|incidence| incidence.shown).count();
+    let count = scan
+        .incidences
+        .iter()
+        .filter(|incidence| incidence.shown)
+        .count();
     let ground = theme::ground(ui.ctx());
     let mut place = 0;
-    Grid::new("incidences").num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
-        if scan.readings() > 0 {
-            ui.weak("psi");
-            ui.weak("readings");
-            ui.weak("E %");
-            ui.end_row();
-        }
-        for (i, incidence) in scan.incidences.iter().enumerate() {
-            let colour = if incidence.shown {
-                place += 1;
-                theme::colour(sample.family, place - 1, count, ground)
-            } else {
-                ui.visuals().weak_text_color()
-            };
-            let mut shown = incidence.shown;
-            let text = RichText::new(degrees(incidence.psi)).color(colour).strong();
-            if ui.checkbox(&mut shown, text).changed() {
-                intents.push(Intent::ShowIncidence(sample.id, i, shown));
+    Grid::new("incidences")
+        .num_columns(3)
+        .spacing([10.0, 3.0])
+        .show(ui, |ui| {
+            if scan.readings() > 0 {
+                ui.weak("psi");
+                ui.weak("readings");
+                ui.weak("E %");
+                ui.end_row();
             }
-            if incidence.readings > 0 {
-                ui.label(incidence.readings.to_string());
+            for (i, incidence) in scan.incidences.iter().enumerate() {
+                let colour = if incidence.shown {
+                    place += 1;
+                    theme::colour(sample.family, place - 1, count, ground)
+                } else {
+                    ui.visuals().weak_text_color()
+                };
+                let mut shown = incidence.shown;
+                let text = RichText::new(degrees(incidence.psi)).color(colour).strong();
+                if ui.checkbox(&mut shown, text).changed() {
+                    intents.push(Intent::ShowIncidence(sample.id, i, shown));
+                }
+                if incidence.readings > 0 {
+                    ui.label(incidence.readings.to_string());
+                }
+                if let Some(e) = errors.and_then(|e| e.incidences.get(i)?.e_percent) {
+                    ui.label(digits(e));
+                }
+                ui.end_row();
             }
-            if let Some(e) = errors.and_then(|e| e.incidences.get(i)?.e_percent) {
-                ui.label(digits(e));
-            }
-            ui.end_row();
-        }
-    });
+        });
     ui.add_space(6.0);
 }
 

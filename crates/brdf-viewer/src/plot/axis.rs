@@ -72,7 +72,11 @@ fn linear(input: GridInput) -> Vec<GridMark> {
     let mut marks = marks_every(low, high, fine);
     for mark in &mut marks {
         let steps = (mark.value / fine).round();
-        mark.step_size = if steps.rem_euclid(5.0) == 0.0 { 5.0 * fine } else { fine };
+        mark.step_size = if steps.rem_euclid(5.0) == 0.0 {
+            5.0 * fine
+        } else {
+            fine
+        };
     }
     marks
 }
@@ -126,14 +130,21 @@ fn marks_every(low: f64, high: f64, step: f64) -> Vec<GridMark> {
 pub fn round_number_above(least: f64) -> f64 {
     let decade = 10_f64.powf(least.log10().floor());
     let steps = [1.0, 2.0, 5.0].map(|step| step * decade);
-    steps.into_iter().find(|step| *step >= least).unwrap_or(10.0 * decade)
+    steps
+        .into_iter()
+        .find(|step| *step >= least)
+        .unwrap_or(10.0 * decade)
 }
 
 /// A number with the decimals of its step.
 fn number(value: f64, step: f64) -> String {
     let decimals = -step.log10().floor();
     // The rounding of a multiple of the step is no number of its own.
-    let value = if value.abs() < 1e-9 * step { 0.0 } else { value };
+    let value = if value.abs() < 1e-9 * step {
+        0.0
+    } else {
+        value
+    };
     if (0.0..5.0).contains(&decimals) {
         format!("{value:.0$}", decimals as usize)
     } else if value.abs() < 1e5 && decimals < 0.0 {
@@ -164,7 +175,13 @@ pub fn degrees(input: GridInput) -> Vec<GridMark> {
     let mut marks = marks_every(input.bounds.0, input.bounds.1, 5.0);
     for mark in &mut marks {
         let is = |step: f64| mark.value.rem_euclid(step) == 0.0;
-        mark.step_size = if is(30.0) { 30.0 } else if is(15.0) { 15.0 } else { 5.0 };
+        mark.step_size = if is(30.0) {
+            30.0
+        } else if is(15.0) {
+            15.0
+        } else {
+            5.0
+        };
     }
     marks
 }
@@ -185,7 +202,10 @@ mod tests {
     fn a_logarithmic_grid_has_decades_and_their_parts() {
         let marks = values(Axis::Logarithmic, -3.0, 0.0);
         for value in [0.001, 0.002, 0.009, 0.01, 0.5, 1.0_f64] {
-            assert!(marks.iter().any(|m| (m - value.log10()).abs() < 1e-12), "{value}");
+            assert!(
+                marks.iter().any(|m| (m - value.log10()).abs() < 1e-12),
+                "{value}"
+            );
         }
         assert_eq!(values(Axis::Logarithmic, -30.0, 30.0).len() % 2, 1);
     }

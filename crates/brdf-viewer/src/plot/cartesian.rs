@@ -28,7 +28,14 @@ const LEAST_PANEL: f32 = 120.0;
 pub fn together(ui: &mut Ui, plots: &Plots) {
     let all: Vec<&Drawn> = plots.drawn.iter().collect();
     let group = Some((Id::unique("theta"), [true, false]));
-    pair(ui, plots, &all, ["theory", "residuals"], ui.available_size(), group);
+    pair(
+        ui,
+        plots,
+        &all,
+        ["theory", "residuals"],
+        ui.available_size(),
+        group,
+    );
 }
 
 /// Theory and experiment, and where they are asked for the residuals below.
@@ -41,7 +48,11 @@ fn pair(
     group: Group,
 ) {
     let state = plots.state;
-    let below = if state.view.residuals { size.y * RESIDUALS } else { 0.0 };
+    let below = if state.view.residuals {
+        size.y * RESIDUALS
+    } else {
+        0.0
+    };
     let place = Place {
         state,
         name: theory_name,
@@ -72,16 +83,18 @@ pub fn panels(ui: &mut Ui, plots: &Plots) {
         (whole.x - gap.x * (columns - 1) as f32) / columns as f32,
         ((whole.y - gap.y * rows as f32) / rows as f32).max(least),
     );
-    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        for (row, chunk) in panels.chunks(columns).enumerate() {
-            ui.horizontal(|ui| {
-                for (column, panel) in chunk.iter().enumerate() {
-                    let place = row * columns + column;
-                    ui.allocate_ui(size, |ui| show_panel(ui, plots, panel, place, size));
-                }
-            });
-        }
-    });
+    egui::ScrollArea::vertical()
+        .auto_shrink(false)
+        .show(ui, |ui| {
+            for (row, chunk) in panels.chunks(columns).enumerate() {
+                ui.horizontal(|ui| {
+                    for (column, panel) in chunk.iter().enumerate() {
+                        let place = row * columns + column;
+                        ui.allocate_ui(size, |ui| show_panel(ui, plots, panel, place, size));
+                    }
+                });
+            }
+        });
 }
 
 fn show_panel(ui: &mut Ui, plots: &Plots, panel: &[&Drawn], place: usize, size: Vec2) {
@@ -192,16 +205,27 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
     let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
         for (i, one) in drawn.iter().enumerate() {
             let (curve, colour) = (one.curve, one.colour);
-            plot_ui.add(Drawing::new(format!("curve {i}"), move |transform, shapes| {
-                if let Some(mirror) = state.view.mirror_deg(curve.psi) {
-                    items::upright(transform, mirror, colour, shapes);
-                }
-                let faint = colour.gamma_multiply(0.25);
-                items::band(transform, axis, &curve.theory, faint, shapes);
-                let value = |reading: &Reading| reading.value;
-                items::readings(transform, axis, &curve.readings, value, one.mark, colour, shapes);
-                items::theory(transform, axis, &curve.theory, colour, shapes);
-            }));
+            plot_ui.add(Drawing::new(
+                format!("curve {i}"),
+                move |transform, shapes| {
+                    if let Some(mirror) = state.view.mirror_deg(curve.psi) {
+                        items::upright(transform, mirror, colour, shapes);
+                    }
+                    let faint = colour.gamma_multiply(0.25);
+                    items::band(transform, axis, &curve.theory, faint, shapes);
+                    let value = |reading: &Reading| reading.value;
+                    items::readings(
+                        transform,
+                        axis,
+                        &curve.readings,
+                        value,
+                        one.mark,
+                        colour,
+                        shapes,
+                    );
+                    items::theory(transform, axis, &curve.theory, colour, shapes);
+                },
+            ));
         }
     });
     let at = |reading: &Reading| Some([reading.theta_deg, axis.place(reading.value)?]);
@@ -214,19 +238,32 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
 
 fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
     let all = plots.drawn.iter().flat_map(|drawn| &drawn.curve.readings);
-    let largest = all.map(|reading| reading.residual().abs()).fold(0.0, f64::max);
+    let largest = all
+        .map(|reading| reading.residual().abs())
+        .fold(0.0, f64::max);
     let reach = if largest > 0.0 { 1.1 * largest } else { 1.0 };
     let plot = over_theta(place, Axis::Linear, "measured - theory", true)
         .include_y(-reach)
         .include_y(reach);
     let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
         for (i, one) in drawn.iter().enumerate() {
-            plot_ui.add(Drawing::new(format!("residuals {i}"), move |transform, shapes| {
-                let readings = &one.curve.readings;
-                let value = Reading::residual;
-                let (mark, colour) = (one.mark, one.colour);
-                items::readings(transform, Axis::Linear, readings, value, mark, colour, shapes);
-            }));
+            plot_ui.add(Drawing::new(
+                format!("residuals {i}"),
+                move |transform, shapes| {
+                    let readings = &one.curve.readings;
+                    let value = Reading::residual;
+                    let (mark, colour) = (one.mark, one.colour);
+                    items::readings(
+                        transform,
+                        Axis::Linear,
+                        readings,
+                        value,
+                        mark,
+                        colour,
+                        shapes,
+                    );
+                },
+            ));
         }
     });
     read_out(&response, drawn, |reading| {
@@ -236,12 +273,7 @@ fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
 }
 
 /// The plot with everything in view again, where the user asked for it since the last frame.
-pub(super) fn reset_on_demand<'a>(
-    ui: &Ui,
-    state: &State,
-    name: &str,
-    plot: Plot<'a>,
-) -> Plot<'a> {
+pub(super) fn reset_on_demand<'a>(ui: &Ui, state: &State, name: &str, plot: Plot<'a>) -> Plot<'a> {
     let key = super::id(state, name).with("resets");
     let seen = ui.data(|data| data.get_temp::<u64>(key)).unwrap_or(0);
     if seen == state.zoom_resets {
@@ -259,17 +291,22 @@ fn name_panel(ui: &Ui, response: &PlotResponse<()>, drawn: &[&Drawn]) {
     let corner = response.transform.frame().left_top() + vec2(5.0, 3.0);
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().strong_text_color();
-    ui.painter()
-        .text(corner, Align2::LEFT_TOP, title(first.curve.psi), font, colour);
+    ui.painter().text(
+        corner,
+        Align2::LEFT_TOP,
+        title(first.curve.psi),
+        font,
+        colour,
+    );
 }
 
 /// Says in words what the plot shows, for those who do not see it.
 pub fn describe(response: &PlotResponse<()>, name: &str, drawn: &[&Drawn]) {
     let readings: usize = drawn.iter().map(|one| one.curve.readings.len()).sum();
     let words = format!("{} curves, {readings} readings", drawn.len());
-    response.response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::Role::Image, true, name)
-    });
+    response
+        .response
+        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
     let ctx = &response.response.ctx;
     ctx.accesskit_node_builder(response.response.id, |node| node.set_description(words));
 }

@@ -36,22 +36,30 @@ pub fn show(ui: &mut Ui, plots: &Plots) {
         plot = plot.include_x(x * radius).include_y(y * radius);
     }
     let ink = ui.visuals().weak_text_color();
-    let response = super::cartesian::reset_on_demand(ui, plots.state, "polar", plot).show(ui, |plot_ui| {
-        let faint = Stroke::new(1.0, ink.gamma_multiply(0.35));
-        plot_ui.add(Drawing::new("grid".to_owned(), move |transform, shapes| {
-            grid(transform, radius, faint, shapes);
-        }));
-        for (name, position, text) in labels(radius) {
-            let position = PlotPoint::new(position[0], position[1]);
-            plot_ui.text(Text::new(name, position, text).color(ink).anchor(Align2::CENTER_CENTER));
-        }
-        for (i, one) in drawn.iter().enumerate() {
-            let colour = one.colour;
-            plot_ui.add(Drawing::new(format!("curve {i}"), move |transform, shapes| {
-                draw(transform, one, colour, plots, radius, shapes);
+    let response =
+        super::cartesian::reset_on_demand(ui, plots.state, "polar", plot).show(ui, |plot_ui| {
+            let faint = Stroke::new(1.0, ink.gamma_multiply(0.35));
+            plot_ui.add(Drawing::new("grid".to_owned(), move |transform, shapes| {
+                grid(transform, radius, faint, shapes);
             }));
-        }
-    });
+            for (name, position, text) in labels(radius) {
+                let position = PlotPoint::new(position[0], position[1]);
+                plot_ui.text(
+                    Text::new(name, position, text)
+                        .color(ink)
+                        .anchor(Align2::CENTER_CENTER),
+                );
+            }
+            for (i, one) in drawn.iter().enumerate() {
+                let colour = one.colour;
+                plot_ui.add(Drawing::new(
+                    format!("curve {i}"),
+                    move |transform, shapes| {
+                        draw(transform, one, colour, plots, radius, shapes);
+                    },
+                ));
+            }
+        });
     read_out(&response, &drawn, |reading: &Reading| {
         Some(place(reading.theta_deg, reading.value))
     });
@@ -81,7 +89,13 @@ fn draw(
         let [x, y] = place(theory.theta_deg, theory.value);
         (x, y)
     });
-    items::line(transform, Axis::Linear, points, Stroke::new(1.8, colour), shapes);
+    items::line(
+        transform,
+        Axis::Linear,
+        points,
+        Stroke::new(1.8, colour),
+        shapes,
+    );
 }
 
 /// Half circles at round values, and rays every 30 deg.
@@ -106,7 +120,11 @@ fn labels(radius: f64) -> Vec<(String, [f64; 2], String)> {
     });
     let radii = [0.5, 1.0].map(|part| {
         let text = format!("{} 1/sr", part * radius);
-        (format!("radius {part}"), [part * radius, -0.04 * radius], text)
+        (
+            format!("radius {part}"),
+            [part * radius, -0.04 * radius],
+            text,
+        )
     });
     angles.chain(radii).collect()
 }

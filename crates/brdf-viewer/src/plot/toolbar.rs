@@ -19,7 +19,11 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
             (Command::Polar, "Polar"),
         ] {
             let on = state.is_on(command) == Some(true);
-            if ui.selectable_label(on, name).on_hover_text(command.name()).clicked() {
+            if ui
+                .selectable_label(on, name)
+                .on_hover_text(command.name())
+                .clicked()
+            {
                 intents.push(Intent::Do(command));
             }
         }
@@ -57,11 +61,13 @@ fn show_side(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     };
     let mut view = state.view;
     let combo = ComboBox::from_id_salt("side").width(150.0);
-    let shown = combo.selected_text(name(view.theta_positive)).show_ui(ui, |ui| {
-        for side in [Side::Source, Side::Forward] {
-            ui.selectable_value(&mut view.theta_positive, side, name(side));
-        }
-    });
+    let shown = combo
+        .selected_text(name(view.theta_positive))
+        .show_ui(ui, |ui| {
+            for side in [Side::Source, Side::Forward] {
+                ui.selectable_value(&mut view.theta_positive, side, name(side));
+            }
+        });
     named(shown.response, egui::Role::ComboBox, "positive side");
     if view != state.view {
         intents.push(Intent::View(view));
@@ -115,12 +121,19 @@ fn left_out(state: &State) -> String {
     }
     let mut words = Vec::new();
     if all > in_plane {
-        words.push(format!("{} out of this plane", counted(all - in_plane, "reading")));
+        words.push(format!(
+            "{} out of this plane",
+            counted(all - in_plane, "reading")
+        ));
     }
     if in_plane > drawn {
         words.push(format!(
             "{drawn} of {in_plane} readings drawn: the first, lowest and highest of each {}",
-            if state.view.scale == Scale::Linear { "column" } else { "column of points" }
+            if state.view.scale == Scale::Linear {
+                "column"
+            } else {
+                "column of points"
+            }
         ));
     }
     if without_place > 0 {

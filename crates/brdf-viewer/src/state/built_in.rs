@@ -1,8 +1,8 @@
 //! The samples that are always at hand: the project's measured ones, and Table 1 of the paper.
 
 use brdf_core::published::PUBLISHED;
-use brdf_fit::read::ReadError;
 use brdf_fit::Measurements;
+use brdf_fit::read::ReadError;
 
 use super::sample::{Scan, published_name};
 

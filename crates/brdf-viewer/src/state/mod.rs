@@ -208,7 +208,8 @@ impl State {
             Intent::Tab(tab) => self.interface.tab = tab,
             Intent::Side(side, shown) => *self.side_mut(side) = shown,
             Intent::Path(text) => {
-                if let Some(Dialog::Open { path } | Dialog::Export { path, .. }) = &mut self.dialog {
+                if let Some(Dialog::Open { path } | Dialog::Export { path, .. }) = &mut self.dialog
+                {
                     *path = text;
                 }
             }
@@ -571,14 +572,21 @@ impl State {
         let wavelength = wavelength.map_or_else(String::new, |w| format!("_{w}um"));
         let name: String = format!("{}{wavelength}", sample.name)
             .chars()
-            .map(|c| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' })
+            .map(|c| {
+                if c.is_alphanumeric() || "._-".contains(c) {
+                    c
+                } else {
+                    '_'
+                }
+            })
             .collect();
         PathBuf::from(format!("{name}.{}", what.extension()))
     }
 
     fn write(&mut self, what: Export, path: PathBuf) {
         let target = brdf_fit::output::resolved(&path);
-        let is_scan = |sample: &&Sample| brdf_fit::output::resolved(Path::new(&sample.source)) == target;
+        let is_scan =
+            |sample: &&Sample| brdf_fit::output::resolved(Path::new(&sample.source)) == target;
         if let Some(sample) = self.samples.iter().find(is_scan) {
             let source = sample.source.clone();
             self.complain(format!(
@@ -700,7 +708,9 @@ fn parameter_table(sample: &Sample) -> String {
     let scan = sample.scan();
     let knobs = scan.knobs;
     let mut text = "parameter\tvalue\tstandard error\t95 % from\t95 % to\n".to_owned();
-    let uncertainty = scan.fit_shown().and_then(|report| report.uncertainty.as_ref());
+    let uncertainty = scan
+        .fit_shown()
+        .and_then(|report| report.uncertainty.as_ref());
     for parameter in knobs.parameters() {
         let estimate = uncertainty.and_then(|u| u.estimate(parameter));
         let interval = estimate.map(brdf_fit::uncertainty::Estimate::interval_95);

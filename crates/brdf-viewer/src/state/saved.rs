@@ -205,7 +205,10 @@ mod tests {
             let Found::Damaged(note) = Saved::read(&path) else {
                 panic!("{text:?} was taken");
             };
-            assert!(note.contains("state.json") && note.contains("defaults"), "{note}");
+            assert!(
+                note.contains("state.json") && note.contains("defaults"),
+                "{note}"
+            );
             let aside = folder.path().join("state.damaged");
             assert_eq!(std::fs::read_to_string(aside).unwrap(), text);
             assert!(!path.exists());

@@ -146,7 +146,9 @@ impl ShownScan {
                 uncertainty.band(&brdf, at)
             };
             let sigma = uncertainty.map(|u| move |at: &Geometry| band(u, at));
-            let sigma = sigma.as_ref().map(|sigma| sigma as &dyn Fn(&Geometry) -> f64);
+            let sigma = sigma
+                .as_ref()
+                .map(|sigma| sigma as &dyn Fn(&Geometry) -> f64);
             curves(&scan.measurements, selection, &brdf, sigma, view)
         });
     }

@@ -53,11 +53,7 @@ impl Dialogs for NoDialogs {
 }
 
 /// A window with what `dialogs` and `settings` say.
-pub fn window_with(
-    size: [f32; 2],
-    dialogs: impl Dialogs + 'static,
-    settings: Settings,
-) -> Window {
+pub fn window_with(size: [f32; 2], dialogs: impl Dialogs + 'static, settings: Settings) -> Window {
     let mut window = Harness::builder()
         .with_size(size)
         .with_theme(egui::Theme::Light)
@@ -100,7 +96,10 @@ pub fn settle(window: &mut Window) {
         if !window.state().is_busy() {
             break;
         }
-        assert!(started.elapsed() < Duration::from_secs(60), "the work does not end");
+        assert!(
+            started.elapsed() < Duration::from_secs(60),
+            "the work does not end"
+        );
         std::thread::sleep(Duration::from_millis(2));
     }
     window.run();
@@ -123,7 +122,8 @@ pub fn menu(window: &mut Window, title: &str, entry: &str) {
     window.get_by_role_and_label(Role::Button, title).click();
     window.run();
     let found = window.get_by(|node| {
-        node.label().is_some_and(|label| label == entry || label.starts_with(&format!("{entry} ")))
+        node.label()
+            .is_some_and(|label| label == entry || label.starts_with(&format!("{entry} ")))
             && node.role() == Role::Button
     });
     found.click();
@@ -132,7 +132,9 @@ pub fn menu(window: &mut Window, title: &str, entry: &str) {
 
 /// Types into the number box of a parameter.
 pub fn type_number(window: &mut Window, label: &str, text: &str) {
-    window.get_by_role_and_label(Role::SpinButton, label).click();
+    window
+        .get_by_role_and_label(Role::SpinButton, label)
+        .click();
     window.run();
     let focused = window.get_by(|node| node.is_focused());
     focused.type_text(text);
@@ -186,7 +188,10 @@ pub fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec<PlotPo
     let transform = memory.transform();
     let lines = painted_lines(window, colour);
     let longest = lines.into_iter().max_by_key(Vec::len).unwrap_or_default();
-    longest.into_iter().map(|at| transform.value_from_position(at)).collect()
+    longest
+        .into_iter()
+        .map(|at| transform.value_from_position(at))
+        .collect()
 }
 
 /// How many marks of a colour are painted: filled circles and polygons.
@@ -215,6 +220,7 @@ pub fn colour_of(window: &Window, i: usize) -> Color32 {
 
 /// The Z307 sample of the project as text.
 pub fn z307() -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/measured/z307_on_aluminium.csv");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/measured/z307_on_aluminium.csv");
     std::fs::read_to_string(path).unwrap()
 }

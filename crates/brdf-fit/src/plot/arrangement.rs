@@ -1,0 +1,241 @@
+//! One figure of a view, of one or several samples, arranged as the view says.
+
+use brdf_core::AnyBrdf;
+
+use super::axis::Axis;
+use super::canvas::{Canvas, Stands, drawn};
+use super::curves::{Curves, Source, Styled};
+use super::frame::{Area, Frame, WHOLE, draw_title};
+use super::style::TEXT;
+use super::title::Title;
+use super::view::{Layout, Scale, View};
+use super::{Figure, PlotError, Sigma, polar, residuals, theory};
+use crate::measurement::Measurements;
+
+/// The part of the height that the residuals take.
+const RESIDUALS: f64 = 0.28;
+
+/// Between two planes: room for the numbers at their axes.
+const GAP: (f64, f64) = (46.0, 40.0);
+
+/// What a figure shows of one sample.
+pub struct Layer<'a> {
+    /// Its name.
+    pub name: String,
+    /// Its readings; none where only the theory is known.
+    pub measurements: &'a Measurements,
+    /// The theory.
+    pub brdf: AnyBrdf,
+    /// The theory in words: the model and its parameters.
+    pub theory: String,
+    /// The standard error of the theory in 1/sr at a geometry.
+    pub sigma: Sigma<'a>,
+    /// The incidences that are shown, psi in radians; `None` shows up to 8 of those with readings.
+    pub incidences: Option<&'a [f64]>,
+    /// The family of colours: see [`colour`](super::colour).
+    pub family: usize,
+}
+
+/// One figure of a view, `view`, of one or several samples: together, in panels or in the polar
+/// form, with the residuals below where the view asks for them.
+pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
+    let several = layers.len() > 1;
+    let sources: Vec<Source> = layers
+        .iter()
+        .map(|layer| Source {
+            name: several.then_some(layer.name.as_str()),
+            measurements: layer.measurements,
+            brdf: &layer.brdf,
+            sigma: layer.sigma,
+            incidences: layer.incidences,
+            family: layer.family,
+        })
+        .collect();
+    let curves = Curves::of(&sources, view);
+    let title = title(layers);
+    let axis = theory::axis(&curves, view.scale);
+    let note = match (view.layout, view.scale) {
+        (Layout::Polar, _) => polar::note_on_lost(&curves),
+        (_, Scale::Linear) => None,
+        (_, Scale::Logarithmic) => theory::note_on_lost(&curves, &axis),
+    };
+    let svg = if view.layout == Layout::Polar {
+        polar::svg(&title, &curves, note.as_deref())?
+    } else {
+        drawn(|canvas| {
+            draw_title(canvas, &title)?;
+            for panel in panels(&curves) {
+                panel.draw(canvas, &curves, &axis)?;
+            }
+            theory::legend(&curves, note.as_deref()).draw(canvas)
+        })?
+    };
+    let note = note.map_or_else(String::new, |note| format!(" {note}."));
+    Ok(Figure {
+        name: "view".to_owned(),
+        caption: format!(
+            "Theory against experiment: {} over the view angle. Marks: readings. Lines: {}.{}{note}",
+            view.quantity.axis_name(),
+            title.theory,
+            curves.left_out
+        ),
+        svg,
+    })
+}
+
+fn title(layers: &[Layer]) -> Title {
+    let join = |of: &dyn Fn(&Layer) -> String| layers.iter().map(of).collect::<Vec<_>>().join("; ");
+    let theory = join(&|layer: &Layer| layer.theory.clone());
+    let sample = match layers {
+        [one] => {
+            let sample = one.measurements.metadata.get("sample").unwrap_or_default();
+            let wavelength = one.measurements.wavelengths().first().copied().flatten();
+            let wavelength = wavelength.map_or_else(String::new, |w| format!(", {w} um"));
+            let colon = if sample.is_empty() { "" } else { ": " };
+            shortened(&format!("{}{wavelength}{colon}{sample}", one.name), 100)
+        }
+        _ => shortened(&join(&|layer: &Layer| layer.name.clone()), 100),
+    };
+    Title {
+        sample,
+        details: shortened(&theory, 130),
+        theory,
+    }
+}
+
+/// A text that is not longer than a line.
+fn shortened(text: &str, longest: usize) -> String {
+    if text.chars().count() <= longest {
+        return text.to_owned();
+    }
+    let start: String = text.chars().take(longest - 3).collect();
+    format!("{start}...")
+}
+
+/// A plane of theory and experiment, with the residuals below it where they are shown.
+struct Panel<'a> {
+    area: Area,
+    curves: Vec<&'a Styled>,
+    /// The incidence, where every panel has one of its own.
+    name: Option<String>,
+    /// Whether the names of the axes stand here: of view angles, and of the values.
+    names: (bool, bool),
+    small: bool,
+}
+
+/// All curves in one panel, or a panel for each incidence.
+fn panels(curves: &Curves) -> Vec<Panel<'_>> {
+    let mut all: Vec<&Styled> = curves.curves.iter().collect();
+    if curves.view.layout != Layout::Panels {
+        return vec![Panel {
+            area: WHOLE,
+            curves: all,
+            name: None,
+            names: (true, true),
+            small: false,
+        }];
+    }
+    all.sort_by(|a, b| a.curve.psi.total_cmp(&b.curve.psi));
+    let same = |a: &&Styled, b: &&Styled| (b.curve.psi - a.curve.psi).to_degrees() < 0.05;
+    let groups: Vec<Vec<&Styled>> = all.chunk_by(same).map(<[_]>::to_vec).collect();
+    let count = groups.len();
+    let columns = columns(count);
+    let rows = count.div_ceil(columns);
+    groups
+        .into_iter()
+        .enumerate()
+        .map(|(i, group)| Panel {
+            area: part(i % columns, columns, i / columns, rows),
+            name: group.first().map(|styled| styled.curve.name()),
+            curves: group,
+            // A panel with none below it has the name of the view angle.
+            names: (i + columns >= count, i % columns == 0),
+            small: columns > 1,
+        })
+        .collect()
+}
+
+/// So many columns that panels are somewhat wider than high.
+fn columns(count: usize) -> usize {
+    match count {
+        0 | 1 => 1,
+        2..=4 => 2,
+        5..=9 => 3,
+        10..=16 => 4,
+        _ => 5,
+    }
+}
+
+/// A part of the figure.
+fn part(column: usize, columns: usize, row: usize, rows: usize) -> Area {
+    let along = |from: f64, to: f64, gap: f64, i: usize, count: usize| {
+        let size = (to - from - gap * (count - 1) as f64) / count as f64;
+        let start = from + (size + gap) * i as f64;
+        (start, start + size)
+    };
+    let (left, right) = along(WHOLE.left, WHOLE.right, GAP.0, column, columns);
+    let (top, bottom) = along(WHOLE.top, WHOLE.bottom, GAP.1, row, rows);
+    Area {
+        left,
+        right,
+        top,
+        bottom,
+    }
+}
+
+impl Panel<'_> {
+    fn draw(&self, canvas: &mut Canvas, curves: &Curves, y: &Axis) -> Result<(), PlotError> {
+        let view = &curves.view;
+        let below = view.residuals.then(|| self.below());
+        let frame = Frame {
+            x: self.theta_axis(),
+            y: y.clone(),
+            area: Area {
+                bottom: below.map_or(self.area.bottom, |below| below.top - 22.0),
+                ..self.area
+            },
+        };
+        let theta_name = view.theta_name();
+        let theta_name = if self.names.0 {
+            theta_name.as_str()
+        } else {
+            ""
+        };
+        let value_name = |name: &'static str| if self.names.1 { name } else { "" };
+        let quantity = value_name(view.quantity.axis_name());
+        let above_name = if below.is_some() { "" } else { theta_name };
+        frame.draw(canvas, above_name, quantity)?;
+        theory::draw_curves(canvas, &frame, &self.curves, view)?;
+        if let Some(name) = &self.name {
+            let place = (frame.area.left + 5.0, frame.area.top - 9.0);
+            canvas.text(name, place, TEXT, Stands::Right)?;
+        }
+        let Some(area) = below else {
+            return Ok(());
+        };
+        let frame = Frame {
+            x: self.theta_axis(),
+            y: residuals::axis(curves),
+            area,
+        };
+        let name = if self.small {
+            "residual"
+        } else {
+            residuals::RESIDUAL
+        };
+        frame.draw(canvas, theta_name, value_name(name))?;
+        residuals::draw_residuals(canvas, &frame, &self.curves, view)
+    }
+
+    fn theta_axis(&self) -> Axis {
+        Axis::fixed(-90, 90, if self.small { 45 } else { 15 })
+    }
+
+    fn below(&self) -> Area {
+        let height = self.area.bottom - self.area.top;
+        Area {
+            top: self.area.bottom - RESIDUALS * height,
+            ..self.area
+        }
+    }
+}

@@ -1,0 +1,178 @@
+//! Which readings are shown: those of some incidences, in one plane, and no more than can be told
+//! apart. It depends on the data and the view, not on the theory, and can be kept while parameters
+//! change.
+
+use super::view::View;
+use crate::measurement::{Incidence, Measurements};
+
+/// A column with more readings is thinned.
+const A_COLUMN: usize = 3;
+
+/// The readings that are shown.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// One for each incidence, ascending.
+    pub traces: Vec<Trace>,
+}
+
+/// The readings of one incidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trace {
+    /// Incidence angle psi in radians.
+    pub psi: f64,
+    /// The indices of the readings that are shown, in ascending order of the view angle as shown.
+    pub readings: Vec<usize>,
+    /// How many readings of the incidence are in the plane.
+    pub all: usize,
+}
+
+impl Selection {
+    /// The readings of a view, of the incidences with these angles psi in radians; `None` takes all.
+    /// An incidence without any reading in the plane has a trace without readings.
+    ///
+    /// Where one of `columns` equal intervals of the view angle from -90 to 90 deg holds more than 3
+    /// readings of an incidence, its first, lowest and highest are shown: outliers and the width of
+    /// the noise stay to be seen.
+    pub fn of(
+        measurements: &Measurements,
+        view: &View,
+        incidences: Option<&[f64]>,
+        columns: usize,
+    ) -> Self {
+        let known = measurements.incidences();
+        let trace = |psi: f64, incidence: Option<&Incidence>| {
+            let none = Incidence {
+                psi,
+                readings: Vec::new(),
+            };
+            Trace::of(measurements, view, incidence.unwrap_or(&none), columns)
+        };
+        let traces = match incidences {
+            None => known.iter().map(|i| trace(i.psi, Some(i))).collect(),
+            Some(wanted) => wanted
+                .iter()
+                .map(|&psi| trace(psi, known.iter().find(|i| i.psi == psi)))
+                .collect(),
+        };
+        Self { traces }
+    }
+
+    /// How many readings are shown.
+    pub fn shown(&self) -> usize {
+        self.traces.iter().map(|trace| trace.readings.len()).sum()
+    }
+
+    /// How many readings of these incidences are in the plane.
+    pub fn all(&self) -> usize {
+        self.traces.iter().map(|trace| trace.all).sum()
+    }
+}
+
+impl Trace {
+    fn of(measurements: &Measurements, view: &View, of: &Incidence, columns: usize) -> Self {
+        let all = measurements.readings();
+        let mut readings: Vec<(f64, usize)> = of
+            .readings
+            .iter()
+            .filter_map(|&i| Some((view.signed_deg(all[i].theta_in_plane(view.azimuth)?), i)))
+            .collect();
+        readings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let column = |theta_deg: f64| ((theta_deg + 90.0) / 180.0 * columns as f64).floor();
+        let same = |a: &(f64, usize), b: &(f64, usize)| column(a.0) == column(b.0);
+        let shown = readings
+            .chunk_by(same)
+            .flat_map(|chunk| thinned(chunk, |i| all[i].brdf));
+        Self {
+            psi: of.psi,
+            readings: shown.collect(),
+            all: readings.len(),
+        }
+    }
+}
+
+/// The first, the lowest and the highest of the readings of a column, in their order.
+fn thinned(column: &[(f64, usize)], brdf: impl Fn(usize) -> f64) -> Vec<usize> {
+    let of = |place: usize| brdf(column[place].1);
+    let places: Vec<usize> = if column.len() > A_COLUMN {
+        let by_value = |a: &usize, b: &usize| of(*a).total_cmp(&of(*b));
+        let lowest = (0..column.len()).min_by(by_value).unwrap_or(0);
+        let highest = (0..column.len()).max_by(by_value).unwrap_or(0);
+        let mut places = vec![0, lowest, highest];
+        places.sort_unstable();
+        places.dedup();
+        places
+    } else {
+        (0..column.len()).collect()
+    };
+    places.into_iter().map(|place| column[place].1).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measurement::Measurement;
+    use crate::read::Side;
+
+    fn scan(readings: impl IntoIterator<Item = (f64, f64, f64, f64)>) -> Measurements {
+        let reading = |(psi_deg, theta_deg, phi_deg, brdf): (f64, f64, f64, f64)| Measurement {
+            wavelength_um: None,
+            psi: psi_deg.to_radians(),
+            theta: theta_deg.to_radians(),
+            phi: phi_deg.to_radians(),
+            brdf,
+            sigma: None,
+        };
+        Measurements::new("test", readings.into_iter().map(reading).collect()).unwrap()
+    }
+
+    #[test]
+    fn a_plane_is_shown_with_the_sign_of_its_side() {
+        let scan = scan([
+            (30.0, 20.0, 0.0, 0.1),
+            (30.0, -20.0, 0.0, 0.2),
+            (30.0, 40.0, 90.0, 0.3),
+            (30.0, 50.0, 270.0, 0.4),
+            (30.0, 0.0, 0.0, 0.5),
+        ]);
+        let mut view = View::default();
+        let of = |view: &View| {
+            Selection::of(&scan, view, None, 400).traces[0]
+                .readings
+                .clone()
+        };
+        assert_eq!(of(&view), [1, 4, 0]);
+        view.theta_positive = Side::Forward;
+        assert_eq!(of(&view), [0, 4, 1]);
+        view.azimuth = 90_f64.to_radians();
+        assert_eq!(of(&view), [2, 4, 3]);
+    }
+
+    #[test]
+    fn thinning_keeps_outliers_and_tells() {
+        let many = (0..9000).map(|i| {
+            let brdf = if i == 4321 {
+                7.0
+            } else {
+                0.1 + 0.01 * f64::from(i % 13)
+            };
+            (10.0, -85.0 + 0.018 * f64::from(i), 0.0, brdf)
+        });
+        let scan = scan(many);
+        let selection = Selection::of(&scan, &View::default(), None, 100);
+        assert_eq!(selection.all(), 9000);
+        assert!(selection.shown() <= 300 && selection.shown() > 200);
+        assert!(selection.traces[0].readings.contains(&4321));
+        let all = Selection::of(&scan, &View::default(), None, 1_000_000);
+        assert_eq!(all.shown(), 9000);
+    }
+
+    #[test]
+    fn an_incidence_without_readings_has_an_empty_trace() {
+        let scan = scan([(10.0, 5.0, 0.0, 0.1), (20.0, 5.0, 45.0, 0.1)]);
+        let psi: Vec<f64> = scan.incidences().iter().map(|i| i.psi).collect();
+        let selection = Selection::of(&scan, &View::default(), Some(&psi[1..]), 100);
+        assert_eq!((selection.traces.len(), selection.shown()), (1, 0));
+        let theory = Selection::of(&Measurements::default(), &View::default(), Some(&[0.5]), 9);
+        assert_eq!(theory.traces[0].psi, 0.5);
+    }
+}

@@ -15,6 +15,7 @@ use crate::profile::Search;
 use crate::stages::{Fit, FitError, FitOptions, Fitted, fit_scan};
 use crate::uncertainty::{Estimate, Uncertainty};
 use crate::warning::NOT_DESCRIBED_PERCENT;
+use crate::watch::{Cancelled, Phase, Progress, Unwatched, Watch, unless_cancelled};
 
 /// The verdict takes a smaller model when the root mean square error of its prediction is not
 /// larger than that of the best by more than this fraction.
@@ -187,6 +188,17 @@ pub fn assess(
     fit: &Fit,
     compare: bool,
 ) -> Result<Assessment, FitError> {
+    assess_watched(measurements, fit, compare, &Unwatched)
+}
+
+/// [`assess`], each step of which is told.
+pub(crate) fn assess_watched(
+    measurements: &Measurements,
+    fit: &Fit,
+    compare: bool,
+    watch: &dyn Watch,
+) -> Result<Assessment, FitError> {
+    let progress = Progress::begin(watch, Phase::Assessment)?;
     let accepted = accepted_readings(measurements, fit);
     let scan = &accepted
         .as_ref()
@@ -200,8 +212,9 @@ pub fn assess(
     let options = plain(&fit.options);
     let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
     for &model in models {
-        match rung(scan, model, &options) {
+        match rung(scan, model, &options, &progress) {
             Ok(rung) => rungs.push(rung),
+            Err(FitError::Cancelled) => return Err(FitError::Cancelled),
             Err(error) => left_out.push(LeftOut {
                 model,
                 reason: error.to_string(),
@@ -214,14 +227,14 @@ pub fn assess(
         rung.aicc_above_best = rung.aicc_above_best.map(|aicc| aicc - best);
     }
 
-    let fitted = fit_scan(scan, &options)?;
-    let search = fitted.search();
+    let fitted = fit_scan(scan, &options, &progress)?;
+    let search = fitted.search(&progress)?;
     let (model, at) = (fit.model(), fitted.fit.at());
     Ok(Assessment {
         readings: scan.readings().len(),
         e_percent: fitted.fit.e_percent,
-        bootstrap: bootstrap(&fitted.criterion, &search, model, &at),
-        prediction: leave_one_out(&fitted.criterion, &search, model, &at),
+        bootstrap: bootstrap(&fitted.criterion, &search, model, &at, &progress)?,
+        prediction: leave_one_out(&fitted.criterion, &search, model, &at, &progress)?,
         physics: Physics::of(model, &fit.at()).ok_or_else(|| {
             FitError::Solver("the fit ended outside of the model's domain".to_owned())
         })?,
@@ -253,28 +266,40 @@ fn plain(options: &FitOptions) -> FitOptions {
 
 /// The model of the ladder that suffices for a scan: see [`Verdict`]. The paper's where nothing can
 /// be predicted.
-pub fn sufficient_model(measurements: &Measurements, options: &FitOptions) -> Model {
+pub(crate) fn sufficient_model(
+    measurements: &Measurements,
+    options: &FitOptions,
+    watch: &dyn Watch,
+) -> Result<Model, Cancelled> {
+    let progress = Progress::begin(watch, Phase::Assessment)?;
     let (scan, options) = (measurements.thinned(ASSESSED_READINGS), plain(options));
-    let rungs: Vec<Rung> = Model::LADDER
-        .into_iter()
-        .filter_map(|model| rung(&scan, model, &options).ok())
-        .collect();
-    verdict(&rungs)
+    let mut rungs = Vec::new();
+    for model in Model::LADDER {
+        rungs.extend(unless_cancelled(rung(&scan, model, &options, &progress))?);
+    }
+    Ok(verdict(&rungs)
         .and_then(|verdict| verdict.model)
-        .unwrap_or(Model::Three)
+        .unwrap_or(Model::Three))
 }
 
-fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung, FitError> {
+fn rung(
+    scan: &Measurements,
+    model: Model,
+    options: &FitOptions,
+    progress: &Progress<'_>,
+) -> Result<Rung, FitError> {
     let options = FitOptions {
         model,
         start: None,
         ..options.clone()
     };
-    let fitted = fit_scan(scan, &options)?;
-    let (fit, criterion, search) = (&fitted.fit, &fitted.criterion, fitted.search());
+    let fitted = fit_scan(scan, &options, progress)?;
+    let (fit, criterion, search) = (&fitted.fit, &fitted.criterion, fitted.search(progress)?);
     let at = fit.at();
     let brdf = AnyBrdf::new(model.family(), &at).ok();
-    let prediction = leave_one_out(criterion, &search, model, &at);
+    let prediction = leave_one_out(criterion, &search, model, &at, progress)?;
+    let given_sigma = options.weights.by_sigma;
+    let uncertainty = Uncertainty::of(criterion, model, &at, given_sigma, 1.0, progress)?;
     Ok(Rung {
         model,
         parameters: at,
@@ -282,16 +307,16 @@ fn rung(scan: &Measurements, model: Model, options: &FitOptions) -> Result<Rung,
         predicted_e_percent: prediction.as_ref().map(|p| p.e_percent),
         predicted_incidences: prediction.map_or(0, |p| p.count()),
         aicc_above_best: aicc(fit),
-        estimates: Uncertainty::of(criterion, model, &at, options.weights.by_sigma, 1.0).estimates,
+        estimates: uncertainty.estimates,
         violation_deg: brdf.as_ref().and_then(violation_deg),
     })
 }
 
 impl Fitted {
     /// The search of the global check, or a new one where that was left out.
-    fn search(&self) -> Search {
-        let new = || Search::new(&self.criterion, self.fit.model());
-        self.search.clone().unwrap_or_else(new)
+    fn search(&self, progress: &Progress<'_>) -> Result<Search, Cancelled> {
+        let new = || Search::new(&self.criterion, self.fit.model(), progress);
+        self.search.clone().map_or_else(new, Ok)
     }
 }
 

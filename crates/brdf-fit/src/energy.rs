@@ -10,7 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::criterion::{Criterion, ProfileSums};
 use crate::model::{Model, Parameter};
 use crate::profile::{Search, solve_for};
+use crate::solver::told::Told;
 use crate::stages::FitError;
+use crate::watch::{Cancelled, Progress};
 
 /// Up to this incidence a fit keeps energy when nobody says another angle, in degrees.
 pub const USUAL_LIMIT_DEG: f64 = 85.0;
@@ -60,6 +62,7 @@ pub(crate) fn conserve(
     model: Model,
     best: &ModelParameters,
     limit: f64,
+    progress: &Progress<'_>,
 ) -> Result<ModelParameters, FitError> {
     let bounded = Bounded {
         criterion,
@@ -67,15 +70,14 @@ pub(crate) fn conserve(
         limit,
         axes: axes(model),
         fixed: *best,
+        progress,
     };
     if bounded.largest_reflectance(best) <= 1.0 {
         return Ok(*best);
     }
     let mut lowest = bounded.best_weights(best);
-    for start in bounded.best_points() {
-        let found = bounded
-            .descend(&start)
-            .map_err(|error| FitError::Solver(error.to_string()))?;
+    for start in bounded.best_points()? {
+        let found = bounded.descend(&start)?;
         if found.1 < lowest.1 {
             lowest = found;
         }
@@ -119,6 +121,7 @@ struct Bounded<'a> {
     axes: Vec<Parameter>,
     /// The values of what is not on the axes.
     fixed: ModelParameters,
+    progress: &'a Progress<'a>,
 }
 
 impl Bounded<'_> {
@@ -141,23 +144,24 @@ impl Bounded<'_> {
     }
 
     /// The lowest points of the search under the condition, roughly; the lowest first.
-    fn best_points(&self) -> Vec<ModelParameters> {
-        let search = Search::new(self.criterion, self.model);
+    fn best_points(&self) -> Result<Vec<ModelParameters>, Cancelled> {
+        let search = Search::new(self.criterion, self.model, self.progress)?;
         let ranked = search.whole().ascending();
         let mut ranked: Vec<(ModelParameters, f64)> = ranked
             .into_par_iter()
             .map(|point| {
+                self.progress.pass()?;
                 let at = point.parameters;
                 let largest = specular(self.model.family(), &at, self.limit, ROUGH);
                 let sums = self.criterion.profile_sums(&at);
                 let (k2, kd) = weights_below(self.model, &sums, largest);
                 let at = ModelParameters { k2, kd, ..at };
-                (at, self.criterion.error(&at))
+                Ok((at, self.criterion.error(&at)))
             })
-            .collect();
+            .collect::<Result<_, Cancelled>>()?;
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
         ranked.truncate(STARTS);
-        ranked.into_iter().map(|(at, _)| at).collect()
+        Ok(ranked.into_iter().map(|(at, _)| at).collect())
     }
 
     /// Simplices one after another, until one brings nothing.
@@ -222,7 +226,8 @@ impl Bounded<'_> {
         };
         let corners = std::iter::once(start.clone()).chain((0..self.axes.len()).map(corner));
         let solver = NelderMead::new(corners.collect()).with_sd_tolerance(SPREAD * error)?;
-        let result = Executor::new(self, solver)
+        let tell = |_: &_, _| self.progress.pass();
+        let result = Executor::new(self, Told { solver, tell })
             .configure(|state| state.max_iters(ITERATIONS))
             .ctrlc(false)
             .run()?;

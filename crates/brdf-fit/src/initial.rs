@@ -12,6 +12,7 @@ use crate::criterion::{Criterion, ProfileSums};
 use crate::measurement::{Incidence, Measurement};
 use crate::model::{K1_RANGE, Model};
 use crate::profile::{Search, solve};
+use crate::watch::{Cancelled, Progress};
 
 /// Two readings that bracket the mirror direction are interpolated if they are no farther apart
 /// than this, in radians (10 deg): the step of a usual scan, and then some.
@@ -141,36 +142,34 @@ pub(crate) fn initial_values(
     incidences: &[Incidence],
     n: f64,
     criterion: &Criterion,
-) -> InitialValues {
+    progress: &Progress<'_>,
+) -> Result<InitialValues, Cancelled> {
+    let search = || Search::new(criterion, Model::Three, progress);
     let fresnel = Dielectric::new(n);
     let sections: Vec<Section> = incidences
         .iter()
         .map(|incidence| Section::new(incidence, readings))
         .collect();
     let Some((k2, kd, weights)) = weights_of_mirror_readings(&sections, &fresnel) else {
-        let point = Search::new(criterion, Model::Three).whole().lowest();
-        return InitialValues {
+        let point = search()?.whole().lowest();
+        return Ok(InitialValues {
             parameters: point.parameters.parameters(),
             weights: Some(WeightsRoute::WholeScan),
             width: Some(WidthRoute::WholeScan),
-        };
+        });
     };
     let (k1, width) = match width_at_half_height(&sections, &fresnel, k2, kd) {
         Some(k1) => (k1, WidthRoute::HalfHeight),
         None => (
-            Search::new(criterion, Model::Three)
-                .whole()
-                .lowest()
-                .parameters
-                .k1,
+            search()?.whole().lowest().parameters.k1,
             WidthRoute::WholeScan,
         ),
     };
-    InitialValues {
+    Ok(InitialValues {
         parameters: Parameters { k2, kd, k1 },
         weights: Some(weights),
         width: Some(width),
-    }
+    })
 }
 
 /// Steps 1 and 2. In the mirror direction pi f_r = k2 c + kD with c = R0(psi)/cos^2 psi.
@@ -276,13 +275,16 @@ mod tests {
     use super::*;
     use crate::measurement::Measurements;
     use crate::synthetic::scan;
+    use crate::watch::{Phase, Unwatched};
     use crate::weights::Weights;
 
     fn initial(readings: Vec<Measurement>) -> InitialValues {
         let scan = Measurements::new("test", readings).unwrap();
         let family = brdf_core::Family::Paper;
         let criterion = Criterion::new(&scan, family, 1.5, &Weights::default()).unwrap();
-        initial_values(scan.readings(), &scan.incidences(), 1.5, &criterion)
+        let progress = Progress::new(&Unwatched, Phase::Stage1);
+        let incidences = scan.incidences();
+        initial_values(scan.readings(), &incidences, 1.5, &criterion, &progress).unwrap()
     }
 
     fn truth() -> Parameters {

@@ -23,6 +23,8 @@
 //!                                 criterion, profile, solver    prediction, ladder of models
 //! ```
 //!
+//! Every step on the way can be watched, and ended: see [`watch`].
+//!
 //! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
 //! on screens only, with `_deg` in the name.
 
@@ -45,6 +47,7 @@ pub mod stages;
 pub mod synthetic;
 pub mod uncertainty;
 pub mod warning;
+pub mod watch;
 pub mod weights;
 mod words;
 

@@ -10,6 +10,7 @@ use crate::criterion::{Criterion, Segment};
 use crate::model::{Model, Parameter};
 use crate::profile::Search;
 use crate::stages::{IncidenceError, polish};
+use crate::watch::{Cancelled, Progress, unless_cancelled};
 use crate::words::in_degrees;
 
 /// Resamples of the bootstrap: the ends of its 95 % interval are the 6th and the 195th.
@@ -47,13 +48,14 @@ pub(crate) fn leave_one_out(
     search: &Search,
     model: Model,
     at: &ModelParameters,
-) -> Option<Prediction> {
+    progress: &Progress<'_>,
+) -> Result<Option<Prediction>, Cancelled> {
     let segments = criterion.segments();
     let (mut above, mut below) = (0.0, 0.0);
     let folds = criterion.folds();
     let fits: Vec<Option<ModelParameters>> = (0..folds)
-        .map(|fold| fit_of_others(criterion, search, model, at, fold))
-        .collect();
+        .map(|fold| fit_of_others(criterion, search, model, at, fold, progress))
+        .collect::<Result<_, _>>()?;
     let incidences = segments.iter().enumerate().map(|(i, segment)| {
         let others = fits[i % folds].as_ref();
         let sums = others.map(|others| squares(criterion, segment, others));
@@ -69,10 +71,10 @@ pub(crate) fn leave_one_out(
         }
     });
     let incidences = incidences.collect();
-    (below > 0.0).then(|| Prediction {
+    Ok((below > 0.0).then(|| Prediction {
         incidences,
         e_percent: 100.0 * above / below,
-    })
+    }))
 }
 
 /// The parameters of a fit of all incidences but those of one fold.
@@ -82,19 +84,29 @@ fn fit_of_others(
     model: Model,
     at: &ModelParameters,
     left_out: usize,
-) -> Option<ModelParameters> {
+    progress: &Progress<'_>,
+) -> Result<Option<ModelParameters>, Cancelled> {
+    progress.pass()?;
     let folds = criterion.folds();
-    let others = criterion.subset(|i| i % folds != left_out).ok()?;
-    if !others.suffices_for(model.free()) {
-        return None;
-    }
+    let others = criterion.subset(|i| i % folds != left_out).ok();
+    let Some(others) = others.filter(|others| others.suffices_for(model.free())) else {
+        return Ok(None);
+    };
     let lowest = search
         .profile(|i| if i == left_out { 0.0 } else { 1.0 })
         .lowest();
-    [lowest.parameters, *at]
-        .into_iter()
-        .filter_map(|start| polish(&others, start, model.free()).ok())
-        .min_by(|a, b| others.error(a).total_cmp(&others.error(b)))
+    let mut ends = Vec::with_capacity(2);
+    for start in [lowest.parameters, *at] {
+        ends.extend(unless_cancelled(polish(
+            &others,
+            start,
+            model.free(),
+            progress,
+        ))?);
+    }
+    let best =
+        |a: &ModelParameters, b: &ModelParameters| others.error(a).total_cmp(&others.error(b));
+    Ok(ends.into_iter().min_by(best))
 }
 
 /// The squared errors and the squared readings of an incidence.
@@ -127,23 +139,23 @@ pub(crate) fn bootstrap(
     search: &Search,
     model: Model,
     at: &ModelParameters,
-) -> Vec<Spread> {
+    progress: &Progress<'_>,
+) -> Result<Vec<Spread>, Cancelled> {
     let count = criterion.folds();
     if count < 3 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let mut generator = StdRng::seed_from_u64(SEED);
-    let resamples: Vec<ModelParameters> = (0..RESAMPLES)
-        .filter_map(|_| {
-            let mut times = vec![0.0; count];
-            for _ in 0..count {
-                times[generator.random_range(0..count)] += 1.0;
-            }
-            resample(criterion, search, model, at, &times)
-        })
-        .collect();
+    let mut resamples = Vec::with_capacity(RESAMPLES);
+    for _ in 0..RESAMPLES {
+        let mut times = vec![0.0; count];
+        for _ in 0..count {
+            times[generator.random_range(0..count)] += 1.0;
+        }
+        resamples.extend(resample(criterion, search, model, at, &times, progress)?);
+    }
     let spread = |&parameter: &Parameter| spread(parameter, &resamples);
-    model.free().iter().filter_map(spread).collect()
+    Ok(model.free().iter().filter_map(spread).collect())
 }
 
 fn resample(
@@ -152,23 +164,25 @@ fn resample(
     model: Model,
     at: &ModelParameters,
     times: &[f64],
-) -> Option<ModelParameters> {
+    progress: &Progress<'_>,
+) -> Result<Option<ModelParameters>, Cancelled> {
+    progress.pass()?;
     let mut factors = vec![0.0; criterion.len()];
     let segments = criterion.segments().iter();
     for (segment, times) in segments.zip(times.iter().cycle()) {
         factors[segment.rows.clone()].fill(*times);
     }
-    let drawn = criterion.reweighted(|row| factors[row]).ok()?;
-    if !drawn.suffices_for(model.free()) {
-        return None;
-    }
+    let drawn = criterion.reweighted(|row| factors[row]).ok();
+    let Some(drawn) = drawn.filter(|drawn| drawn.suffices_for(model.free())) else {
+        return Ok(None);
+    };
     let lowest = search.profile(|i| times[i]).lowest().parameters;
     let start = if drawn.error(&lowest) < drawn.error(at) {
         lowest
     } else {
         *at
     };
-    polish(&drawn, start, model.free()).ok()
+    unless_cancelled(polish(&drawn, start, model.free(), progress))
 }
 
 fn spread(parameter: Parameter, resamples: &[ModelParameters]) -> Option<Spread> {

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, ProfileSums};
 use crate::model::{K1_RANGE, Model, Parameter};
+use crate::watch::{Cancelled, Progress};
 
 /// Steps of the search, equal in ln k1: 0.25 each. As a function of ln k1 the paper's model has its
 /// nearest singularity at a distance of pi/2 in the complex plane, so that its profile cannot have
@@ -121,19 +122,27 @@ pub(crate) struct Profile<'a> {
 }
 
 impl Search {
-    /// The search for a model over the incidences of a criterion.
-    pub(crate) fn new(criterion: &Criterion, model: Model) -> Self {
+    /// The search for a model over the incidences of a criterion; each width is told.
+    pub(crate) fn new(
+        criterion: &Criterion,
+        model: Model,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
         let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
         if several_axes && criterion.len() > SEARCHED_READINGS {
             // The few readings of E may all be zero: then all of them are taken.
             if let Ok(thinned) = criterion.thinned(SEARCHED_READINGS) {
-                return Self::over(&thinned, model);
+                return Self::over(&thinned, model, progress);
             }
         }
-        Self::over(criterion, model)
+        Self::over(criterion, model, progress)
     }
 
-    fn over(criterion: &Criterion, model: Model) -> Self {
+    fn over(
+        criterion: &Criterion,
+        model: Model,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
         let axis = |free: bool, fixed: f64, all: &[f64]| {
             if free { all.to_vec() } else { vec![fixed] }
         };
@@ -153,6 +162,7 @@ impl Search {
         let mut shape = Vec::with_capacity(criterion.len());
         for &p in &axes[2] {
             for &k1 in &axes[0] {
+                progress.pass()?;
                 criterion.shape_column(k1, p, &mut shape);
                 for fresnel in &fresnel {
                     let start = lobe.len();
@@ -173,12 +183,12 @@ impl Search {
             let products = [product(a, a), product(a, y), product(y, y)];
             add(&mut fixed[i % folds], &products, 1.0);
         }
-        Self {
+        Ok(Self {
             model,
             axes,
             lobe,
             fixed,
-        }
+        })
     }
 
     /// The profile with each fold of the incidences taken so many times.
@@ -360,6 +370,7 @@ mod tests {
     use super::*;
     use crate::Measurements;
     use crate::synthetic::scan;
+    use crate::watch::{Phase, Unwatched};
     use crate::weights::Weights;
 
     fn criterion_of(family: Family, k2: f64, kd: f64, k1: f64) -> Criterion {
@@ -377,6 +388,11 @@ mod tests {
         criterion_of(Family::Paper, k2, kd, k1)
     }
 
+    fn search_of(criterion: &Criterion, model: Model) -> Search {
+        let progress = Progress::new(&Unwatched, Phase::GlobalCheck);
+        Search::new(criterion, model, &progress).unwrap()
+    }
+
     fn at(k1: f64) -> ModelParameters {
         ModelParameters {
             k2: 0.0,
@@ -391,7 +407,7 @@ mod tests {
     fn the_points_of_a_search_are_the_best_weights_there() {
         for model in Model::ALL {
             let criterion = criterion_of(model.family(), 0.3, 0.1, 0.2);
-            let search = Search::new(&criterion, model);
+            let search = search_of(&criterion, model);
             let profile = search.whole();
             for i in (0..profile.points.len()).step_by(37) {
                 let point = profile.point(i);
@@ -407,10 +423,10 @@ mod tests {
     #[test]
     fn a_choice_of_incidences_is_the_profile_of_their_criterion() {
         let all = criterion(0.3, 0.1, 0.2);
-        let search = Search::new(&all, Model::Three);
+        let search = search_of(&all, Model::Three);
         let without = search.profile(|i| if i == 2 { 0.0 } else { 1.0 }).lowest();
         let subset = all.subset(|i| i != 2).unwrap();
-        let expected = Search::new(&subset, Model::Three).whole().lowest();
+        let expected = search_of(&subset, Model::Three).whole().lowest();
         assert_eq!(without.parameters.k1, expected.parameters.k1);
         assert!((without.error / expected.error - 1.0).abs() < 1e-9);
     }
@@ -430,7 +446,7 @@ mod tests {
         }
         let scan = Measurements::new("test", readings).unwrap();
         let criterion = Criterion::new(&scan, Family::Paper, 1.5, &Weights::default()).unwrap();
-        let search = Search::new(&criterion, Model::Three);
+        let search = search_of(&criterion, Model::Three);
         let minima = search.whole().minima();
         assert_eq!(minima[0].parameters.k1, K1_RANGE.0);
     }

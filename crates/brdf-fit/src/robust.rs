@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::criterion::Criterion;
 use crate::model::Parameter;
 use crate::stages::{FitError, ROUNDING, polish};
+use crate::watch::Progress;
 
 /// Beyond so many standard deviations Huber's loss grows linearly: 95 % as efficient as least
 /// squares where the errors are normal (Huber 1981).
@@ -121,11 +122,14 @@ pub(crate) fn fit_robustly(
     loss: Loss,
     start: ModelParameters,
     free: &[Parameter],
+    progress: &Progress<'_>,
 ) -> Result<(ModelParameters, Criterion, RobustFit), FitError> {
     let (mut at, mut weighted, mut scale) =
-        reweighted_fit(criterion, Loss::Huber, start, free, None)?;
+        reweighted_fit(criterion, Loss::Huber, start, free, None, progress)?;
     if loss == Loss::Tukey {
-        (at, weighted, scale) = reweighted_fit(criterion, loss, at, free, Some(scale))?;
+        let scale_of_huber = Some(scale);
+        (at, weighted, scale) =
+            reweighted_fit(criterion, loss, at, free, scale_of_huber, progress)?;
     }
     let deviations = |(r, _): (f64, f64)| if scale > 0.0 { -r / scale } else { 0.0 };
     let deviations: Vec<f64> = criterion
@@ -161,6 +165,7 @@ fn reweighted_fit(
     start: ModelParameters,
     free: &[Parameter],
     fixed_scale: Option<f64>,
+    progress: &Progress<'_>,
 ) -> Result<(ModelParameters, Criterion, f64), FitError> {
     let mut at = start;
     let mut weighted = criterion.clone();
@@ -180,7 +185,7 @@ fn reweighted_fit(
             break;
         }
         weighted = next;
-        let next = polish(&weighted, at, free)?;
+        let next = polish(&weighted, at, free, progress)?;
         let moved = free.iter().any(|parameter| {
             let (before, after) = (parameter.of(&at), parameter.of(&next));
             (after - before).abs() > SETTLED * before.abs().max(1e-12)

@@ -14,6 +14,7 @@ use crate::profile::{ProfilePoint, Search};
 use crate::refractive_index::RefractiveIndex;
 use crate::robust::{Loss, RobustFit, fit_robustly};
 use crate::solver::{Ending, Method, minimise};
+use crate::watch::{Cancelled, Phase, Progress, Unwatched, Watch};
 use crate::weights::Weights;
 use crate::words::{as_degrees, as_optional_degrees, counted, in_degrees};
 
@@ -228,6 +229,26 @@ pub enum FitError {
     /// A minimiser failed.
     #[error("the minimiser failed: {0}")]
     Solver(String),
+    /// A [`Watch`] has cancelled the fit.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl From<Cancelled> for FitError {
+    fn from(_: Cancelled) -> Self {
+        Self::Cancelled
+    }
+}
+
+/// What ended a minimiser.
+impl From<argmin::core::Error> for FitError {
+    fn from(error: argmin::core::Error) -> Self {
+        if error.is::<Cancelled>() {
+            Self::Cancelled
+        } else {
+            Self::Solver(error.to_string())
+        }
+    }
 }
 
 impl FitError {
@@ -273,7 +294,16 @@ impl Fit {
 ///
 /// The result is the same in every run, but for the times.
 pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, FitError> {
-    fit_scan(measurements, options).map(|fitted| fitted.fit)
+    fit_watched(measurements, options, &Unwatched)
+}
+
+/// [`fit`], each step of which is told to `watch`, who can end it with [`FitError::Cancelled`].
+pub fn fit_watched(
+    measurements: &Measurements,
+    options: &FitOptions,
+    watch: &dyn Watch,
+) -> Result<Fit, FitError> {
+    fit_scan(measurements, options, watch).map(|fitted| fitted.fit)
 }
 
 /// A fit with what it was made with.
@@ -285,10 +315,11 @@ pub(crate) struct Fitted {
     pub(crate) search: Option<Search>,
 }
 
-/// [`fit`], with what it was made with.
+/// [`fit_watched`], with what it was made with.
 pub(crate) fn fit_scan(
     measurements: &Measurements,
     options: &FitOptions,
+    watch: &dyn Watch,
 ) -> Result<Fitted, FitError> {
     let started = Instant::now();
     let readings = measurements.readings();
@@ -305,27 +336,33 @@ pub(crate) fn fit_scan(
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
     let own = first.criterion.as_ref().unwrap_or(&all);
-    let (initial, start) = starting_point(readings, first.incidences, n, own, options);
+    let method1 = options.stage1.filter(|_| first.left_out.is_none());
+    let before = Progress::before(watch, method1.map_or(Phase::Stage2, |_| Phase::Stage1));
+    let (initial, start) = starting_point(readings, first.incidences, n, own, options, &before)?;
 
-    let stage1 = match (options.stage1, &first.left_out) {
-        (Some(method), None) => Some(run(method, own, &all, start, options)?),
-        _ => None,
+    let stage = |method, phase, own, start| {
+        let progress = Progress::new(watch, phase);
+        run(method, own, &all, start, options, &progress)
     };
+    let stage1 = method1
+        .map(|method| stage(method, Phase::Stage1, own, start))
+        .transpose()?;
     let stage2_start = stage1.map_or(start, |stage| stage.parameters);
-    let stage2 = run(options.stage2, &all, &all, stage2_start, options)?;
+    let stage2 = stage(options.stage2, Phase::Stage2, &all, stage2_start)?;
     let mut parameters = stage2.parameters;
     let mut global_check = None;
     let mut search = None;
     if options.global_check {
         let started = Instant::now();
-        let searched = search.insert(Search::new(&all, model));
-        let mut check = check_globally(&all, searched, stage2, options)?;
+        let progress = Progress::begin(watch, Phase::GlobalCheck)?;
+        let searched = search.insert(Search::new(&all, model, &progress)?);
+        let mut check = check_globally(&all, searched, stage2, options, &progress)?;
         check.1.seconds = started.elapsed().as_secs_f64();
         parameters = check.0;
         global_check = Some(check.1);
     }
 
-    let after = after_the_stages(&all, parameters, options)?;
+    let after = after_the_stages(&all, parameters, options, watch)?;
     parameters = after.parameters;
 
     let fit = Fit {
@@ -369,6 +406,7 @@ fn after_the_stages(
     all: &Criterion,
     parameters: ModelParameters,
     options: &FitOptions,
+    watch: &dyn Watch,
 ) -> Result<After, FitError> {
     let mut after = After {
         parameters,
@@ -377,13 +415,16 @@ fn after_the_stages(
         energy: None,
     };
     if let Some(loss) = options.robust {
-        let (at, weighted, robust) = fit_robustly(all, loss, parameters, options.model.free())?;
+        let progress = Progress::begin(watch, Phase::Robust)?;
+        let (at, weighted, robust) =
+            fit_robustly(all, loss, parameters, options.model.free(), &progress)?;
         (after.parameters, after.weighted, after.robust) = (at, Some(weighted), Some(robust));
     }
     if let Some(limit) = options.energy_limit {
         let criterion = after.weighted.as_ref().unwrap_or(all);
         let free = after.parameters;
-        after.parameters = conserve(criterion, options.model, &free, limit)?;
+        let progress = Progress::begin(watch, Phase::Energy)?;
+        after.parameters = conserve(criterion, options.model, &free, limit, &progress)?;
         after.energy = Some(EnergyConstraint {
             limit_deg: in_degrees(limit),
             free,
@@ -401,12 +442,13 @@ fn starting_point(
     n: f64,
     own: &Criterion,
     options: &FitOptions,
-) -> (InitialValues, ModelParameters) {
+    progress: &Progress<'_>,
+) -> Result<(InitialValues, ModelParameters), Cancelled> {
     let model = options.model;
     let Some(given) = options.start else {
-        let initial = initial_values(readings, incidences, n, own);
+        let initial = initial_values(readings, incidences, n, own, progress)?;
         let start = ModelParameters::three(initial.parameters, n);
-        return (initial, model.start(start));
+        return Ok((initial, model.start(start)));
     };
     let initial = InitialValues {
         parameters: given.parameters(),
@@ -418,7 +460,7 @@ fn starting_point(
     } else {
         n
     };
-    (initial, model.start(ModelParameters { n, ..given }))
+    Ok((initial, model.start(ModelParameters { n, ..given })))
 }
 
 /// The refractive index that the options or the measurements state, or the usual one where it is
@@ -519,11 +561,11 @@ fn run(
     all: &Criterion,
     start: ModelParameters,
     options: &FitOptions,
+    progress: &Progress<'_>,
 ) -> Result<Stage, FitError> {
     let started = Instant::now();
     let free = options.model.free();
-    let minimum = minimise(own, method, start, free, options.max_iterations)
-        .map_err(|error| FitError::Solver(error.to_string()))?;
+    let minimum = minimise(own, method, start, free, options.max_iterations, progress)?;
     Ok(Stage {
         method,
         parameters: minimum.parameters,
@@ -548,11 +590,11 @@ pub(crate) fn polish(
     criterion: &Criterion,
     from: ModelParameters,
     free: &[Parameter],
+    progress: &Progress<'_>,
 ) -> Result<ModelParameters, FitError> {
     let method = Method::LevenbergMarquardt;
-    minimise(criterion, method, from, free, POLISH_ITERATIONS)
+    minimise(criterion, method, from, free, POLISH_ITERATIONS, progress)
         .map(|minimum| minimum.parameters)
-        .map_err(|error| FitError::Solver(error.to_string()))
 }
 
 /// Looks for a minimum below that of stage 2, and takes it where there is one.
@@ -561,6 +603,7 @@ fn check_globally(
     search: &Search,
     stage2: Stage,
     options: &FitOptions,
+    progress: &Progress<'_>,
 ) -> Result<(ModelParameters, GlobalCheck), FitError> {
     let profile = search.whole();
     let mut parameters = stage2.parameters;
@@ -570,7 +613,7 @@ fn check_globally(
         if profile.is_next_to(&minimum, &parameters) && here <= all.error(&minimum.parameters) {
             continue;
         }
-        let polished = polish(all, minimum.parameters, options.model.free())?;
+        let polished = polish(all, minimum.parameters, options.model.free(), progress)?;
         if all.error(&polished) < here * (1.0 - LOWER) - ROUNDING {
             parameters = polished;
         }

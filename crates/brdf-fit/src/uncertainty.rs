@@ -13,6 +13,7 @@ use crate::model::{K1_RANGE, Model, Parameter};
 use crate::profile::best_weights;
 use crate::solver::{Method, minimise};
 use crate::stages::{Fit, Fitted, ROUNDING};
+use crate::watch::{Cancelled, Progress, unless_cancelled};
 
 /// The end of an interval is known to this fraction of its quantile.
 const END_TOLERANCE: f64 = 1e-3;
@@ -182,11 +183,11 @@ pub struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// The uncertainty of a fit.
-    pub(crate) fn of_fit(fitted: &Fitted) -> Self {
+    /// The uncertainty of a fit; each iteration of a refit is told.
+    pub(crate) fn of_fit(fitted: &Fitted, progress: &Progress<'_>) -> Result<Self, Cancelled> {
         let fit = &fitted.fit;
         if fit.energy.is_some_and(|energy| energy.binding) {
-            return Self::held_by_energy(fit);
+            return Ok(Self::held_by_energy(fit));
         }
         let given_sigma = fit.options.weights.by_sigma;
         let factor = fit
@@ -199,6 +200,7 @@ impl Uncertainty {
             &fit.at(),
             given_sigma,
             factor,
+            progress,
         )
     }
 
@@ -235,7 +237,8 @@ impl Uncertainty {
         at: &ModelParameters,
         given_sigma: bool,
         variance_factor: f64,
-    ) -> Self {
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
         let readings = criterion.len() - criterion.weightless();
         let on_bound = |parameter: &Parameter| is_on_bound(*parameter, at);
         let covered: Vec<Parameter> = model
@@ -269,17 +272,18 @@ impl Uncertainty {
             variance,
             given,
             quantiles,
+            progress,
         };
-        let mut estimates: Vec<Estimate> =
-            model.free().iter().map(|&p| profiler.estimate(p)).collect();
+        let estimates = model.free().iter().map(|&p| profiler.estimate(p));
+        let mut estimates = estimates.collect::<Result<Vec<Estimate>, _>>()?;
         profiler.open_with_the_width(&mut estimates);
-        Self {
+        Ok(Self {
             noise,
             degrees_of_freedom,
             estimates,
             covered,
             covariance: covariance.map_or_else(Vec::new, |covariance| rows(&covariance)),
-        }
+        })
     }
 
     /// The estimate of a parameter, where it is free.
@@ -401,18 +405,20 @@ struct Profiler<'a> {
     /// Its standard deviation for each, where the scan states them.
     given: Option<&'a [f64]>,
     quantiles: [f64; 2],
+    progress: &'a Progress<'a>,
 }
 
 impl Profiler<'_> {
-    fn estimate(&self, parameter: Parameter) -> Estimate {
-        Estimate {
+    fn estimate(&self, parameter: Parameter) -> Result<Estimate, Cancelled> {
+        Ok(Estimate {
             parameter,
             value: parameter.of(self.at),
-            knowledge: self.knowledge(parameter),
-        }
+            knowledge: self.knowledge(parameter)?,
+        })
     }
 
-    fn knowledge(&self, parameter: Parameter) -> Knowledge {
+    fn knowledge(&self, parameter: Parameter) -> Result<Knowledge, Cancelled> {
+        self.progress.pass()?;
         let open = Interval {
             from: None,
             to: None,
@@ -422,44 +428,46 @@ impl Profiler<'_> {
             interval_95,
         };
         if !has_effect(parameter, self.at) {
-            return not_determined("k2 is 0, and an absent lobe has no such property", open);
+            let reason = "k2 is 0, and an absent lobe has no such property";
+            return Ok(not_determined(reason, open));
         }
         let value = parameter.of(self.at);
         if is_on_bound(parameter, self.at) {
             let growth = self.growth_on_bound(parameter);
             let end = |sign: f64| self.end(parameter, sign, growth, self.quantiles[1]);
             let (from, to) = if value > parameter.range().0 {
-                (end(-1.0), None)
+                (end(-1.0)?, None)
             } else if has_natural_bound(parameter) {
-                (Some(value), end(1.0))
+                (Some(value), end(1.0)?)
             } else {
-                (None, end(1.0))
+                (None, end(1.0)?)
             };
             let interval_95 = Interval { from, to };
-            return match self.open_end(parameter, interval_95) {
+            return Ok(match self.open_end(parameter, interval_95) {
                 Some(reason) => not_determined(reason, interval_95),
                 None => Knowledge::OnBound { interval_95 },
-            };
+            });
         }
         let place = self.covered.iter().position(|&p| p == parameter);
         let (Some(i), Some(covariance), Some(inverse)) = (place, self.covariance, self.inverse)
         else {
-            return not_determined("the readings do not tell the parameters apart", open);
+            let reason = "the readings do not tell the parameters apart";
+            return Ok(not_determined(reason, open));
         };
         let standard_error = covariance[(i, i)].sqrt();
         // The growth of E for one standard error, also where the variances are given.
         let growth = covariance[(i, i)] / inverse[(i, i)];
-        let [interval_68, interval_95] = self
-            .quantiles
-            .map(|quantile| self.interval(parameter, standard_error, growth, quantile));
-        match self.open_end(parameter, interval_95) {
+        let [narrow, wide] = self.quantiles;
+        let interval_68 = self.interval(parameter, standard_error, growth, narrow)?;
+        let interval_95 = self.interval(parameter, standard_error, growth, wide)?;
+        Ok(match self.open_end(parameter, interval_95) {
             Some(reason) => not_determined(reason, interval_95),
             None => Knowledge::Determined {
                 standard_error,
                 interval_68,
                 interval_95,
             },
-        }
+        })
     }
 
     /// The growth of E for one standard error of a parameter on its bound, as if it were covered.
@@ -483,32 +491,40 @@ impl Profiler<'_> {
         standard_error: f64,
         growth: f64,
         quantile: f64,
-    ) -> Interval {
+    ) -> Result<Interval, Cancelled> {
         if self.error < ROUNDING {
             let value = parameter.of(self.at);
             let reach = quantile * standard_error;
-            return Interval {
+            return Ok(Interval {
                 from: Some(value - reach),
                 to: Some(value + reach),
-            };
+            });
         }
-        Interval {
-            from: self.end(parameter, -1.0, growth, quantile),
-            to: self.end(parameter, 1.0, growth, quantile),
-        }
+        Ok(Interval {
+            from: self.end(parameter, -1.0, growth, quantile)?,
+            to: self.end(parameter, 1.0, growth, quantile)?,
+        })
     }
 
     /// The end of the interval on one side, by the secant method on the square root of the growth
     /// of E, which is nearly linear. `None` where E never grows so much; a weight or an index ends
     /// at its lower bound.
-    fn end(&self, parameter: Parameter, sign: f64, growth: f64, quantile: f64) -> Option<f64> {
+    fn end(
+        &self,
+        parameter: Parameter,
+        sign: f64,
+        growth: f64,
+        quantile: f64,
+    ) -> Result<Option<f64>, Cancelled> {
         let value = parameter.of(self.at);
         let (lowest, highest) = self.limits(parameter);
         let limit = if sign < 0.0 { lowest } else { highest };
         let scale = Scale::of(parameter);
         let (start, stop) = (scale.coordinate(value), scale.coordinate(limit));
         let linear = self.linear_step(parameter, &scale, value, quantile);
-        let distance = |x: f64| self.deviations(parameter, scale.value(x), growth) - quantile;
+        let distance = |x: f64| -> Result<f64, Cancelled> {
+            Ok(self.deviations(parameter, scale.value(x), growth)? - quantile)
+        };
         let (mut inside, mut below) = (start, -quantile);
         let mut outside: Option<(f64, f64)> = None;
         let mut trial = start + sign * linear;
@@ -518,13 +534,13 @@ impl Profiler<'_> {
             } else {
                 trial.min(stop)
             };
-            let found = distance(trial);
+            let found = distance(trial)?;
             if found.abs() <= END_TOLERANCE * quantile {
-                return Some(scale.value(trial));
+                return Ok(Some(scale.value(trial)));
             }
             if found < 0.0 {
                 if trial == stop {
-                    return (sign < 0.0 && has_natural_bound(parameter)).then_some(limit);
+                    return Ok((sign < 0.0 && has_natural_bound(parameter)).then_some(limit));
                 }
                 (inside, below) = (trial, found);
             } else {
@@ -541,7 +557,8 @@ impl Profiler<'_> {
                 start + sign * reach * factor
             };
         }
-        Some(scale.value(outside.map_or(inside, |(x, _)| 0.5 * (inside + x))))
+        let middle = outside.map_or(inside, |(x, _)| 0.5 * (inside + x));
+        Ok(Some(scale.value(middle)))
     }
 
     /// The range that is looked at: the bounds of a fit; for a weight, what is as good as infinite.
@@ -577,7 +594,7 @@ impl Profiler<'_> {
 
     /// How many standard errors a value is away by the growth of E, the other parameters fitted
     /// anew: sqrt((E - E at the minimum) / growth for one standard error).
-    fn deviations(&self, parameter: Parameter, value: f64, growth: f64) -> f64 {
+    fn deviations(&self, parameter: Parameter, value: f64, growth: f64) -> Result<f64, Cancelled> {
         let others: Vec<Parameter> = self
             .model
             .free()
@@ -588,9 +605,17 @@ impl Profiler<'_> {
         let mut start = self.expected(parameter, value);
         parameter.set(&mut start, value);
         let method = Method::LevenbergMarquardt;
-        let refit = minimise(self.criterion, method, start, &others, REFIT_ITERATIONS);
-        let error = refit.map_or(f64::INFINITY, |minimum| minimum.error);
-        ((error - self.error).max(0.0) / growth).sqrt()
+        let (criterion, progress) = (self.criterion, self.progress);
+        let refit = minimise(
+            criterion,
+            method,
+            start,
+            &others,
+            REFIT_ITERATIONS,
+            progress,
+        );
+        let error = unless_cancelled(refit)?.map_or(f64::INFINITY, |minimum| minimum.error);
+        Ok(((error - self.error).max(0.0) / growth).sqrt())
     }
 
     /// Where the linear theory expects the other parameters when one has the given value.

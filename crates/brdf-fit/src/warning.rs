@@ -13,6 +13,7 @@ use crate::profile::Search;
 use crate::solver::Ending;
 use crate::stages::Fit;
 use crate::uncertainty::{Estimate, Knowledge, Noise, Uncertainty};
+use crate::watch::{Cancelled, Progress};
 use crate::words::counted;
 
 /// Above this E the model does not describe a sample: the readings are missed by a third of their
@@ -183,7 +184,14 @@ impl fmt::Display for Warning {
 }
 
 /// All warnings about a fit of the measurements with its uncertainty, the gravest first.
-pub fn warnings(measurements: &Measurements, fit: &Fit, uncertainty: &Uncertainty) -> Vec<Warning> {
+///
+/// The widths of a search for a scan that is turned round are told.
+pub(crate) fn warnings(
+    measurements: &Measurements,
+    fit: &Fit,
+    uncertainty: &Uncertainty,
+    progress: &Progress<'_>,
+) -> Result<Vec<Warning>, Cancelled> {
     let readings = measurements.readings();
     let mut warnings = Vec::new();
     if fit.e_percent > NOT_DESCRIBED_PERCENT {
@@ -191,13 +199,13 @@ pub fn warnings(measurements: &Measurements, fit: &Fit, uncertainty: &Uncertaint
             e_percent: fit.e_percent,
         });
     }
-    warnings.extend(turned_round(measurements, fit));
+    warnings.extend(turned_round(measurements, fit, progress)?);
     warnings.extend(uncertainty.estimates.iter().filter_map(not_determined));
     warnings.extend(larger_than_stated_errors(uncertainty));
     warnings.extend(reflectance_above_one(fit));
     warnings.extend(iteration_limits(fit));
     warnings.extend(about_readings(readings, fit));
-    warnings
+    Ok(warnings)
 }
 
 fn not_determined(estimate: &Estimate) -> Option<Warning> {
@@ -225,9 +233,13 @@ fn larger_than_stated_errors(uncertainty: &Uncertainty) -> Option<Warning> {
     }
 }
 
-fn turned_round(measurements: &Measurements, fit: &Fit) -> Option<Warning> {
+fn turned_round(
+    measurements: &Measurements,
+    fit: &Fit,
+    progress: &Progress<'_>,
+) -> Result<Option<Warning>, Cancelled> {
     if fit.e_percent <= FITS_WELL_PERCENT {
-        return None;
+        return Ok(None);
     }
     let turned: Vec<Measurement> = measurements
         .readings()
@@ -237,16 +249,29 @@ fn turned_round(measurements: &Measurements, fit: &Fit) -> Option<Warning> {
             ..*r
         })
         .collect();
-    let turned = Measurements::new("", turned).ok()?;
-    // The paper's model at this n tells the sides apart as well as any.
-    let (family, weights) = (Model::Three.family(), &fit.options.weights);
-    let lowest = |scan: &Measurements| {
-        let criterion = Criterion::new(scan, family, fit.n, weights).ok()?;
-        Some(100.0 * Search::new(&criterion, Model::Three).whole().lowest().error)
+    let Ok(turned) = Measurements::new("", turned) else {
+        return Ok(None);
     };
-    let (e_percent, straight) = (lowest(&turned)?, lowest(measurements)?);
-    let is_better = e_percent < TURNED_GAIN * straight.min(fit.e_percent);
-    is_better.then_some(Warning::TurnedRound { e_percent })
+    let turned = lowest_e_percent(&turned, fit, progress)?;
+    let straight = lowest_e_percent(measurements, fit, progress)?;
+    let better = turned
+        .zip(straight)
+        .filter(|(turned, straight)| *turned < TURNED_GAIN * straight.min(fit.e_percent));
+    Ok(better.map(|(e_percent, _)| Warning::TurnedRound { e_percent }))
+}
+
+/// The lowest E of the paper's model at the n of a fit, which tells the sides apart as well as any.
+fn lowest_e_percent(
+    scan: &Measurements,
+    fit: &Fit,
+    progress: &Progress<'_>,
+) -> Result<Option<f64>, Cancelled> {
+    let (family, weights) = (Model::Three.family(), &fit.options.weights);
+    let Ok(criterion) = Criterion::new(scan, family, fit.n, weights) else {
+        return Ok(None);
+    };
+    let search = Search::new(&criterion, Model::Three, progress)?;
+    Ok(Some(100.0 * search.whole().lowest().error))
 }
 
 fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
@@ -328,6 +353,7 @@ mod tests {
     use crate::refractive_index::RefractiveIndex;
     use crate::stages::{FitOptions, fit_scan};
     use crate::synthetic::scan;
+    use crate::watch::{Phase, Unwatched};
 
     fn warnings_of(readings: Vec<Measurement>, change: impl Fn(&mut FitOptions)) -> Vec<Warning> {
         let scan = Measurements::new("test", readings).unwrap();
@@ -336,9 +362,10 @@ mod tests {
             ..FitOptions::default()
         };
         change(&mut options);
-        let fitted = fit_scan(&scan, &options).unwrap();
-        let uncertainty = Uncertainty::of_fit(&fitted);
-        warnings(&scan, &fitted.fit, &uncertainty)
+        let progress = Progress::new(&Unwatched, Phase::Uncertainty);
+        let fitted = fit_scan(&scan, &options, &progress).unwrap();
+        let uncertainty = Uncertainty::of_fit(&fitted, &progress).unwrap();
+        warnings(&scan, &fitted.fit, &uncertainty, &progress).unwrap()
     }
 
     /// A scan with 2 % of ripple, which the model fits well and no parameter follows.

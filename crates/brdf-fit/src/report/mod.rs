@@ -15,13 +15,14 @@ pub use html::html;
 
 use serde::{Deserialize, Serialize};
 
-use crate::assessment::{Assessment, assess, sufficient_model};
+use crate::assessment::{Assessment, assess_watched, sufficient_model};
 use crate::measurement::{Measurement, Measurements, Metadata};
 use crate::model::Model;
 use crate::solver::Ending;
-use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, Fitted, fit_scan};
+use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, fit_scan};
 use crate::uncertainty::Uncertainty;
 use crate::warning::{Warning, warnings};
+use crate::watch::{Phase, Progress, Unwatched, Watch};
 
 /// The result of one wavelength of one file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -104,6 +105,28 @@ impl Report {
         options: &FitOptions,
         depth: Depth,
     ) -> (Self, Option<FitError>) {
+        Self::of_choice(measurements, options, ModelChoice::Given, depth)
+    }
+
+    /// [`of`](Self::of) a model that is chosen by the scan itself, where it is asked for.
+    pub fn of_choice(
+        measurements: &Measurements,
+        options: &FitOptions,
+        choice: ModelChoice,
+        depth: Depth,
+    ) -> (Self, Option<FitError>) {
+        Self::of_watched(measurements, options, choice, depth, &Unwatched)
+    }
+
+    /// [`of_choice`](Self::of_choice), each step of which is told to `watch`, who can end it with
+    /// [`FitError::Cancelled`]: the report then holds what was complete.
+    pub fn of_watched(
+        measurements: &Measurements,
+        options: &FitOptions,
+        choice: ModelChoice,
+        depth: Depth,
+        watch: &dyn Watch,
+    ) -> (Self, Option<FitError>) {
         let mut report = Self {
             file: measurements.source.clone(),
             metadata: measurements.metadata.clone(),
@@ -118,56 +141,52 @@ impl Report {
             assessment: None,
             rejected: Vec::new(),
         };
-        let error = match fit_scan(measurements, options) {
-            Ok(fitted) => report.take(measurements, fitted, depth).err(),
-            Err(error) => Some(error),
+        let filled = match choice {
+            ModelChoice::Given => report.fill(measurements, options, depth, watch),
+            ModelChoice::Auto => report.fill_by_choice(measurements, options, depth, watch),
         };
+        let error = filled.err();
         report.error = error.as_ref().map(ToString::to_string);
         (report, error)
     }
 
-    /// [`of`](Self::of) a model that is chosen by the scan itself.
-    pub fn of_choice(
-        measurements: &Measurements,
-        options: &FitOptions,
-        choice: ModelChoice,
-        depth: Depth,
-    ) -> (Self, Option<FitError>) {
-        match choice {
-            ModelChoice::Given => Self::of(measurements, options, depth),
-            ModelChoice::Auto => {
-                // What cannot be fitted at all is told by the paper's model.
-                let model = sufficient_model(measurements, options);
-                let options = FitOptions {
-                    model,
-                    ..options.clone()
-                };
-                Self::of(measurements, &options, depth)
-            }
-        }
-    }
-
-    fn take(
+    fn fill_by_choice(
         &mut self,
         measurements: &Measurements,
-        fitted: Fitted,
+        options: &FitOptions,
         depth: Depth,
+        watch: &dyn Watch,
     ) -> Result<(), FitError> {
-        let uncertainty = Uncertainty::of_fit(&fitted);
-        self.warnings = warnings(measurements, &fitted.fit, &uncertainty);
-        self.uncertainty = Some(uncertainty);
-        let fit = self.fit.insert(fitted.fit);
-        if let Some(robust) = &fit.robust {
+        // What cannot be fitted at all is told by the paper's model.
+        self.model = sufficient_model(measurements, options, watch)?;
+        let options = FitOptions {
+            model: self.model,
+            ..options.clone()
+        };
+        self.fill(measurements, &options, depth, watch)
+    }
+
+    fn fill(
+        &mut self,
+        measurements: &Measurements,
+        options: &FitOptions,
+        depth: Depth,
+        watch: &dyn Watch,
+    ) -> Result<(), FitError> {
+        let fitted = fit_scan(measurements, options, watch)?;
+        if let Some(robust) = &fitted.fit.robust {
             let readings = measurements.readings();
-            self.rejected = robust
-                .rejected
-                .iter()
-                .map(|r| readings[r.reading])
-                .collect();
+            let rejected = robust.rejected.iter().map(|r| readings[r.reading]);
+            self.rejected = rejected.collect();
         }
+        let fit = self.fit.insert(fitted.fit.clone());
+        let progress = Progress::begin(watch, Phase::Uncertainty)?;
+        let uncertainty = Uncertainty::of_fit(&fitted, &progress)?;
+        self.warnings = warnings(measurements, fit, &uncertainty, &progress)?;
+        self.uncertainty = Some(uncertainty);
         if depth > Depth::Fit {
             let compare = depth == Depth::Compared;
-            self.assessment = Some(assess(measurements, fit, compare)?);
+            self.assessment = Some(assess_watched(measurements, fit, compare, watch)?);
         }
         Ok(())
     }

@@ -2,19 +2,23 @@
 
 pub mod levenberg_marquardt;
 pub mod nelder_mead;
+pub(crate) mod told;
 
 use std::fmt;
 use std::str::FromStr;
 
-use argmin::core::{CostFunction, Error, Executor, State};
+use argmin::core::{CostFunction, Error, Executor, Solver, State as _};
 use brdf_core::ModelParameters;
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, NormalEquations};
 use crate::model::Parameter;
+use crate::stages::FitError;
+use crate::watch::Progress;
 use levenberg_marquardt::{LeastSquares, LevenbergMarquardt};
 use nelder_mead::{NelderMead, Unbounded};
+use told::{State, Told};
 
 /// How a stage minimises E.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -103,32 +107,29 @@ pub struct Minimum {
 }
 
 /// Minimises E over the free parameters from a starting point, each within its
-/// [range](Parameter::range); the others stay as they are.
+/// [range](Parameter::range); the others stay as they are. Each iteration is told, the start as
+/// iteration 0.
 pub fn minimise(
     criterion: &Criterion,
     method: Method,
     start: ModelParameters,
     free: &[Parameter],
     max_iterations: u64,
-) -> Result<Minimum, Error> {
+    progress: &Progress<'_>,
+) -> Result<Minimum, FitError> {
+    let run = Run {
+        method,
+        max_iterations,
+        progress,
+    };
     // The number of free parameters is known to the compiler from here on.
     let found = match *free {
-        [] => Minimum {
-            parameters: start,
-            error: criterion.error(&start),
-            iterations: 0,
-            evaluations: 1,
-            ending: Ending::GradientZero,
-        },
-        [a] => Problem::new(criterion, start, [a]).minimise(method, max_iterations)?,
-        [a, b] => Problem::new(criterion, start, [a, b]).minimise(method, max_iterations)?,
-        [a, b, c] => Problem::new(criterion, start, [a, b, c]).minimise(method, max_iterations)?,
-        [a, b, c, d] => {
-            Problem::new(criterion, start, [a, b, c, d]).minimise(method, max_iterations)?
-        }
-        [a, b, c, d, e, ..] => {
-            Problem::new(criterion, start, [a, b, c, d, e]).minimise(method, max_iterations)?
-        }
+        [] => evaluated(criterion, start, progress)?,
+        [a] => Problem::new(criterion, start, [a]).minimise(&run)?,
+        [a, b] => Problem::new(criterion, start, [a, b]).minimise(&run)?,
+        [a, b, c] => Problem::new(criterion, start, [a, b, c]).minimise(&run)?,
+        [a, b, c, d] => Problem::new(criterion, start, [a, b, c, d]).minimise(&run)?,
+        [a, b, c, d, e, ..] => Problem::new(criterion, start, [a, b, c, d, e]).minimise(&run)?,
     };
     let parameters = onto_bounds(criterion, free, found.parameters);
     Ok(Minimum {
@@ -136,6 +137,30 @@ pub fn minimise(
         error: criterion.error(&parameters),
         ..found
     })
+}
+
+/// E where nothing is free.
+fn evaluated(
+    criterion: &Criterion,
+    at: ModelParameters,
+    progress: &Progress<'_>,
+) -> Result<Minimum, FitError> {
+    let error = criterion.error(&at);
+    progress.reach(error, &at)?;
+    Ok(Minimum {
+        parameters: at,
+        error,
+        iterations: 0,
+        evaluations: 1,
+        ending: Ending::GradientZero,
+    })
+}
+
+/// How a minimiser is run.
+struct Run<'a> {
+    method: Method,
+    max_iterations: u64,
+    progress: &'a Progress<'a>,
 }
 
 /// E as a function of the free parameters.
@@ -168,49 +193,59 @@ impl<'a, const P: usize> Problem<'a, P> {
         at
     }
 
-    fn minimise(self, method: Method, max_iterations: u64) -> Result<Minimum, Error> {
-        match method {
-            Method::NelderMead => self.by_nelder_mead(max_iterations),
-            Method::LevenbergMarquardt => self.by_levenberg_marquardt(max_iterations),
+    fn minimise(self, run: &Run<'_>) -> Result<Minimum, Error> {
+        match run.method {
+            Method::NelderMead => self.by_nelder_mead(run),
+            Method::LevenbergMarquardt => self.by_levenberg_marquardt(run),
         }
     }
 
-    fn by_levenberg_marquardt(self, max_iterations: u64) -> Result<Minimum, Error> {
+    fn by_levenberg_marquardt(self, run: &Run<'_>) -> Result<Minimum, Error> {
         let start = self.vector(|parameter| parameter.of(&self.start));
         let solver = LevenbergMarquardt::new(
             self.vector(|parameter| parameter.range().0),
             self.vector(|parameter| parameter.range().1),
         );
-        let result = Executor::new(self, solver)
-            .configure(|state| state.param(start).max_iters(max_iterations))
-            .ctrlc(false)
-            .run()?;
-        let state = result.state;
-        Ok(Minimum {
-            parameters: self.parameters(state.get_best_param().unwrap_or(&start)),
-            error: state.get_best_cost(),
-            iterations: state.get_iter(),
-            evaluations: result.problem.counts.values().sum(),
-            ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
-        })
+        let (mut found, solver) = run.execute(self, solver, start, |x| self.parameters(x))?;
+        found.ending = solver.ending().unwrap_or(found.ending);
+        Ok(found)
     }
 
-    fn by_nelder_mead(self, max_iterations: u64) -> Result<Minimum, Error> {
+    fn by_nelder_mead(self, run: &Run<'_>) -> Result<Minimum, Error> {
         let problem = Unbounded::new(self);
         let start = problem.to_coordinates(&self.start);
         let solver = NelderMead::new(start, problem.steps());
-        let result = Executor::new(problem, solver)
-            .configure(|state| state.max_iters(max_iterations))
+        let parameters = |x: &_| problem.to_parameters(x);
+        let (mut found, solver) = run.execute(problem, solver, start, parameters)?;
+        found.ending = solver.ending().unwrap_or(found.ending);
+        Ok(found)
+    }
+}
+
+impl Run<'_> {
+    /// Runs a solver over coordinates, which `parameters` turns into parameters.
+    fn execute<const P: usize, O, S: Solver<O, State<SVector<f64, P>>>>(
+        &self,
+        problem: O,
+        solver: S,
+        start: SVector<f64, P>,
+        parameters: impl Fn(&SVector<f64, P>) -> ModelParameters,
+    ) -> Result<(Minimum, S), Error> {
+        let tell = |x: &_, error| self.progress.reach(error, &parameters(x));
+        let told = Told { solver, tell };
+        let result = Executor::new(problem, told)
+            .configure(|state| state.param(start).max_iters(self.max_iterations))
             .ctrlc(false)
             .run()?;
         let state = result.state;
-        Ok(Minimum {
-            parameters: problem.to_parameters(state.get_best_param().unwrap_or(&start)),
+        let found = Minimum {
+            parameters: parameters(state.get_best_param().unwrap_or(&start)),
             error: state.get_best_cost(),
             iterations: state.get_iter(),
             evaluations: result.problem.counts.values().sum(),
-            ending: result.solver.ending().unwrap_or(Ending::IterationLimit),
-        })
+            ending: Ending::IterationLimit,
+        };
+        Ok((found, result.solver.solver))
     }
 }
 
@@ -259,6 +294,7 @@ mod tests {
     use super::*;
     use crate::model::Model;
     use crate::synthetic::scan;
+    use crate::watch::{Phase, Unwatched};
     use crate::weights::Weights;
 
     const METHODS: [Method; 2] = [Method::NelderMead, Method::LevenbergMarquardt];
@@ -278,6 +314,7 @@ mod tests {
             start,
             Model::Three.free(),
             max_iterations,
+            &Progress::new(&Unwatched, Phase::Stage1),
         )
         .unwrap()
     }
@@ -328,7 +365,8 @@ mod tests {
             };
             let errors = METHODS.map(|method| {
                 let start = model.start(start);
-                minimise(&criterion, method, start, model.free(), 10_000)
+                let progress = Progress::new(&Unwatched, Phase::Stage1);
+                minimise(&criterion, method, start, model.free(), 10_000, &progress)
                     .unwrap()
                     .error
             });

@@ -199,6 +199,13 @@ fn usage_that_is_none() {
             vec!["--weights", "sigma"],
             "need the standard deviation of every reading",
         ),
+        (vec!["--hold", "k3=1"], "\"k3\" is no parameter"),
+        (vec!["--hold", "k1"], "expected NAME=VALUE"),
+        (vec!["--hold", "k1=2000"], "k1 = 2000 cannot be held"),
+        (
+            vec!["--hold", "p=1"],
+            "p cannot be held: model three fits k2, kD, k1",
+        ),
         (vec!["--nonsense"], "unexpected argument"),
     ] {
         let file = path.to_str().unwrap();

@@ -247,6 +247,34 @@ fn stages_methods_limit_and_weights_can_be_chosen() {
 }
 
 #[test]
+fn parameters_can_be_held() {
+    let path = measured("z307_on_aluminium.csv");
+    let output = run_fit([path.as_str(), "--n", "1.5", "--hold", "K1=0.2,kd=0.02"]);
+    succeeded(&output);
+    let text = stdout(&output);
+    assert!(text.contains("  held: kD = 0.02, k1 = 0.2\n"), "{text}");
+    assert!(text.contains("no lower minimum at the width that is held"));
+    let value_of = |name: &str| text.contains(&format!("\n  {name:<9}     "));
+    assert!(
+        value_of("k2") && !value_of("kD") && !value_of("k1"),
+        "{text}"
+    );
+    let output = run_fit([
+        path.as_str(),
+        "--n",
+        "1.5",
+        "--hold",
+        "k1=0.2",
+        "--params-only",
+        "--compare",
+    ]);
+    succeeded(&output);
+    let text = stdout(&output);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    assert!(reader.records().all(|record| &record.unwrap()[6] == "0.2"));
+}
+
+#[test]
 fn what_is_odd_about_the_readings_is_counted_and_kept() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("odd.csv");

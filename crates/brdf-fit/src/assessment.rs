@@ -229,13 +229,13 @@ pub(crate) fn assess_watched(
 
     let fitted = fit_scan(scan, &options, &progress)?;
     let search = fitted.search(&progress)?;
-    let (model, at) = (fit.model(), fitted.fit.at());
+    let (model, at) = (options.held_model(), fitted.fit.at());
     Ok(Assessment {
         readings: scan.readings().len(),
         e_percent: fitted.fit.e_percent,
         bootstrap: bootstrap(&fitted.criterion, &search, model, &at, &progress)?,
         prediction: leave_one_out(&fitted.criterion, &search, model, &at, &progress)?,
-        physics: Physics::of(model, &fit.at()).ok_or_else(|| {
+        physics: Physics::of(fit.model(), &fit.at()).ok_or_else(|| {
             FitError::Solver("the fit ended outside of the model's domain".to_owned())
         })?,
         verdict: verdict(&rungs),
@@ -289,17 +289,16 @@ fn rung(
     progress: &Progress<'_>,
 ) -> Result<Rung, FitError> {
     let options = FitOptions {
-        model,
         start: None,
-        ..options.clone()
+        ..options.of_model(model)
     };
     let fitted = fit_scan(scan, &options, progress)?;
     let (fit, criterion, search) = (&fitted.fit, &fitted.criterion, fitted.search(progress)?);
-    let at = fit.at();
+    let (at, held_model) = (fit.at(), options.held_model());
     let brdf = AnyBrdf::new(model.family(), &at).ok();
-    let prediction = leave_one_out(criterion, &search, model, &at, progress)?;
+    let prediction = leave_one_out(criterion, &search, held_model, &at, progress)?;
     let given_sigma = options.weights.by_sigma;
-    let uncertainty = Uncertainty::of(criterion, model, &at, given_sigma, 1.0, progress)?;
+    let uncertainty = Uncertainty::of(criterion, held_model, &at, given_sigma, 1.0, progress)?;
     Ok(Rung {
         model,
         parameters: at,
@@ -315,7 +314,7 @@ fn rung(
 impl Fitted {
     /// The search of the global check, or a new one where that was left out.
     fn search(&self, progress: &Progress<'_>) -> Result<Search, Cancelled> {
-        let new = || Search::new(&self.criterion, self.fit.model(), progress);
+        let new = || Search::new(&self.criterion, self.fit.options.held_model(), progress);
         self.search.clone().map_or_else(new, Ok)
     }
 }
@@ -323,7 +322,7 @@ impl Fitted {
 /// See [`Rung::aicc_above_best`].
 fn aicc(fit: &Fit) -> Option<f64> {
     let readings = (fit.readings - fit.weightless) as f64;
-    let parameters = (fit.model().free().len() + 1) as f64;
+    let parameters = (fit.options.free().len() + 1) as f64;
     let spare = readings - parameters - 1.0;
     if spare <= 0.0 {
         return None;

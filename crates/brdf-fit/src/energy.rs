@@ -8,11 +8,12 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, ProfileSums};
-use crate::model::{Model, Parameter};
-use crate::profile::{Search, solve_for};
+use crate::model::{HeldModel, Parameter};
+use crate::profile::{Search, fixed_weights, solve_for};
 use crate::solver::told::Told;
 use crate::stages::FitError;
 use crate::watch::{Cancelled, Progress};
+use crate::words::in_degrees;
 
 /// Up to this incidence a fit keeps energy when nobody says another angle, in degrees.
 pub const USUAL_LIMIT_DEG: f64 = 85.0;
@@ -59,7 +60,7 @@ pub struct EnergyConstraint {
 /// limit alone and roughly; simplices go on from the best few, with S in full.
 pub(crate) fn conserve(
     criterion: &Criterion,
-    model: Model,
+    model: HeldModel,
     best: &ModelParameters,
     limit: f64,
     progress: &Progress<'_>,
@@ -76,17 +77,26 @@ pub(crate) fn conserve(
         return Ok(*best);
     }
     let mut lowest = bounded.best_weights(best);
-    for start in bounded.best_points()? {
+    let starts = if bounded.axes.is_empty() {
+        Vec::new()
+    } else {
+        bounded.best_points()?
+    };
+    for start in starts {
         let found = bounded.descend(&start)?;
         if found.1 < lowest.1 {
             lowest = found;
         }
     }
-    Ok(lowest.0)
+    if lowest.1.is_finite() {
+        Ok(lowest.0)
+    } else {
+        Err(FitError::HeldAboveEnergy(in_degrees(limit)))
+    }
 }
 
 /// The parameters besides the weights.
-fn axes(model: Model) -> Vec<Parameter> {
+fn axes(model: HeldModel) -> Vec<Parameter> {
     let weights = [Parameter::K2, Parameter::Kd];
     let free = model.free().iter().copied();
     free.filter(|parameter| !weights.contains(parameter))
@@ -116,7 +126,7 @@ fn specular(family: Family, at: &ModelParameters, psi: f64, tolerance: f64) -> f
 
 struct Bounded<'a> {
     criterion: &'a Criterion,
-    model: Model,
+    model: HeldModel,
     limit: f64,
     axes: Vec<Parameter>,
     /// The values of what is not on the axes.
@@ -134,11 +144,17 @@ impl Bounded<'_> {
         at.k2 * specular + at.kd
     }
 
-    /// The best weights under the condition, and E with them.
+    /// The best weights under the condition, and E with them: infinite where held weights break it.
     fn best_weights(&self, at: &ModelParameters) -> (ModelParameters, f64) {
+        self.weights_below(at, largest_specular(self.model.family(), at, self.limit))
+    }
+
+    /// [`best_weights`](Self::best_weights), the largest reflectance being known.
+    fn weights_below(&self, at: &ModelParameters, largest: f64) -> (ModelParameters, f64) {
         let sums = self.criterion.profile_sums(at);
-        let largest = largest_specular(self.model.family(), at, self.limit);
-        let (k2, kd) = weights_below(self.model, &sums, largest);
+        let Some((k2, kd)) = weights_below(fixed_weights(self.model), &sums, largest) else {
+            return (*at, f64::INFINITY);
+        };
         let bounded = ModelParameters { k2, kd, ..*at };
         (bounded, self.criterion.error(&bounded))
     }
@@ -153,13 +169,11 @@ impl Bounded<'_> {
                 self.progress.pass()?;
                 let at = point.parameters;
                 let largest = specular(self.model.family(), &at, self.limit, ROUGH);
-                let sums = self.criterion.profile_sums(&at);
-                let (k2, kd) = weights_below(self.model, &sums, largest);
-                let at = ModelParameters { k2, kd, ..at };
-                Ok((at, self.criterion.error(&at)))
+                Ok(self.weights_below(&at, largest))
             })
             .collect::<Result<_, Cancelled>>()?;
         ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+        ranked.retain(|(_, error)| error.is_finite());
         ranked.truncate(STARTS);
         Ok(ranked.into_iter().map(|(at, _)| at).collect())
     }
@@ -250,22 +264,27 @@ impl CostFunction for &Bounded<'_> {
 }
 
 /// The best weights with k2 `largest` + kD <= 1: those without the condition where they keep it,
-/// else the best on the line, since E is convex.
-fn weights_below(model: Model, sums: &ProfileSums, largest: f64) -> (f64, f64) {
-    let (k2, kd, _) = solve_for(model, sums);
+/// else the best on the line, since E is convex. `None` where what is fixed breaks the condition.
+fn weights_below(fixed: [Option<f64>; 2], sums: &ProfileSums, largest: f64) -> Option<(f64, f64)> {
+    let (k2, kd, _) = solve_for(fixed, sums);
     if k2 * largest + kd <= 1.0 {
-        return (k2, kd);
+        return Some((k2, kd));
     }
-    match model {
-        Model::Lambert => (0.0, 1.0),
-        Model::Specular => (1.0 / largest, 0.0),
-        _ => {
+    match fixed {
+        [Some(_), Some(_)] => None,
+        [Some(k2), None] => {
+            // Nothing leaves by an absent lobe, whatever its shape.
+            let specular = if k2 > 0.0 { k2 * largest } else { 0.0 };
+            (specular <= 1.0).then_some((k2, 1.0 - specular))
+        }
+        [None, Some(kd)] => (kd <= 1.0).then_some(((1.0 - kd) / largest, kd)),
+        [None, None] => {
             // kD = 1 - k2 S leaves y - a to be described by k2 (u - S a).
             let &ProfileSums { uu, ua, uy, aa, ay } = sums;
             let squared = uu - 2.0 * largest * ua + largest * largest * aa;
             let product = uy - ua - largest * ay + largest * aa;
             let k2 = (product / squared).clamp(0.0, 1.0 / largest);
-            (k2, (1.0 - k2 * largest).max(0.0))
+            Some((k2, (1.0 - k2 * largest).max(0.0)))
         }
     }
 }
@@ -275,6 +294,7 @@ mod tests {
     use brdf_core::published::PUBLISHED;
 
     use super::*;
+    use crate::model::Model;
     use crate::synthetic::scan;
     use crate::{FitOptions, RefractiveIndex, fit};
 

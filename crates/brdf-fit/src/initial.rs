@@ -144,7 +144,7 @@ pub(crate) fn initial_values(
     criterion: &Criterion,
     progress: &Progress<'_>,
 ) -> Result<InitialValues, Cancelled> {
-    let search = || Search::new(criterion, Model::Three, progress);
+    let search = || Search::new(criterion, Model::Three.into(), progress);
     let fresnel = Dielectric::new(n);
     let sections: Vec<Section> = incidences
         .iter()

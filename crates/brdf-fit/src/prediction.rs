@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, Segment};
-use crate::model::{Model, Parameter};
+use crate::model::{HeldModel, Parameter};
 use crate::profile::Search;
 use crate::stages::{IncidenceError, polish};
 use crate::watch::{Cancelled, Progress, unless_cancelled};
@@ -46,7 +46,7 @@ impl Prediction {
 pub(crate) fn leave_one_out(
     criterion: &Criterion,
     search: &Search,
-    model: Model,
+    model: HeldModel,
     at: &ModelParameters,
     progress: &Progress<'_>,
 ) -> Result<Option<Prediction>, Cancelled> {
@@ -81,7 +81,7 @@ pub(crate) fn leave_one_out(
 fn fit_of_others(
     criterion: &Criterion,
     search: &Search,
-    model: Model,
+    model: HeldModel,
     at: &ModelParameters,
     left_out: usize,
     progress: &Progress<'_>,
@@ -137,7 +137,7 @@ pub struct Spread {
 pub(crate) fn bootstrap(
     criterion: &Criterion,
     search: &Search,
-    model: Model,
+    model: HeldModel,
     at: &ModelParameters,
     progress: &Progress<'_>,
 ) -> Result<Vec<Spread>, Cancelled> {
@@ -161,7 +161,7 @@ pub(crate) fn bootstrap(
 fn resample(
     criterion: &Criterion,
     search: &Search,
-    model: Model,
+    model: HeldModel,
     at: &ModelParameters,
     times: &[f64],
     progress: &Progress<'_>,

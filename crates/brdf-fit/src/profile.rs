@@ -10,7 +10,7 @@ use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, ProfileSums};
-use crate::model::{K1_RANGE, Model, Parameter};
+use crate::model::{HeldModel, K1_RANGE, Parameter};
 use crate::watch::{Cancelled, Progress};
 
 /// Steps of the search, equal in ln k1: 0.25 each. As a function of ln k1 the paper's model has its
@@ -45,27 +45,40 @@ pub struct ProfilePoint {
     pub error: f64,
 }
 
-/// E minimised over the weights of a model at the other parameters given.
-pub fn best_weights(criterion: &Criterion, model: Model, at: ModelParameters) -> ProfilePoint {
-    let (k2, kd, error) = solve_for(model, &criterion.profile_sums(&at));
+/// E minimised over the weights that a model fits, at the other parameters given.
+pub fn best_weights(criterion: &Criterion, model: HeldModel, at: ModelParameters) -> ProfilePoint {
+    let (k2, kd, error) = solve_for(fixed_weights(model), &criterion.profile_sums(&at));
     ProfilePoint {
         parameters: ModelParameters { k2, kd, ..at },
         error,
     }
 }
 
-/// k2, kD and E of the best weights of a model, the readings being normalised.
-pub(crate) fn solve_for(model: Model, sums: &ProfileSums) -> (f64, f64, f64) {
-    match model {
-        Model::Lambert => {
-            let kd = (sums.ay / sums.aa).max(0.0);
-            (0.0, kd, 1.0 - kd * sums.ay)
+/// k2 and kD where a model does not fit them.
+pub(crate) fn fixed_weights(model: HeldModel) -> [Option<f64>; 2] {
+    [Parameter::K2, Parameter::Kd].map(|weight| model.fixed(weight))
+}
+
+/// k2, kD and E of the best weights where some are fixed, the readings being normalised: what a
+/// fixed part leaves of the readings is described by the other.
+pub(crate) fn solve_for(fixed: [Option<f64>; 2], sums: &ProfileSums) -> (f64, f64, f64) {
+    let &ProfileSums { uu, ua, uy, aa, ay } = sums;
+    match fixed {
+        [None, None] => solve(sums),
+        [Some(k2), None] => {
+            let left = ay - k2 * ua;
+            let kd = alone(left, aa);
+            (k2, kd, 1.0 - 2.0 * k2 * uy + k2 * k2 * uu - kd * left)
         }
-        Model::Specular => {
-            let k2 = alone(sums.uy, sums.uu);
-            (k2, 0.0, 1.0 - k2 * sums.uy)
+        [None, Some(kd)] => {
+            let left = uy - kd * ua;
+            let k2 = alone(left, uu);
+            (k2, kd, 1.0 - 2.0 * kd * ay + kd * kd * aa - k2 * left)
         }
-        _ => solve(sums),
+        [Some(k2), Some(kd)] => {
+            let squares = k2 * k2 * uu + 2.0 * k2 * kd * ua + kd * kd * aa;
+            (k2, kd, 1.0 - 2.0 * (k2 * uy + kd * ay) + squares)
+        }
     }
 }
 
@@ -104,7 +117,8 @@ pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
 /// The scalar products of a search for each of its points and each fold of the incidences.
 #[derive(Debug, Clone)]
 pub(crate) struct Search {
-    model: Model,
+    /// k2 and kD where they are fixed.
+    weights: [Option<f64>; 2],
     /// k1, n and p of the axes.
     axes: [Vec<f64>; 3],
     /// uu, ua, uy: folds within n within k1 within p.
@@ -125,7 +139,7 @@ impl Search {
     /// The search for a model over the incidences of a criterion; each width is told.
     pub(crate) fn new(
         criterion: &Criterion,
-        model: Model,
+        model: HeldModel,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
         let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
@@ -140,16 +154,20 @@ impl Search {
 
     fn over(
         criterion: &Criterion,
-        model: Model,
+        model: HeldModel,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
-        let axis = |free: bool, fixed: f64, all: &[f64]| {
-            if free { all.to_vec() } else { vec![fixed] }
+        let axis = |parameter, all: &[f64]| {
+            if model.frees(parameter) {
+                all.to_vec()
+            } else {
+                vec![model.fixed(parameter).unwrap_or(criterion.n())]
+            }
         };
         let axes = [
-            axis(model.frees(Parameter::K1), 1.0, &widths()),
-            axis(model.frees(Parameter::N), criterion.n(), &INDICES),
-            axis(model.frees(Parameter::P), 1.0, &EXPONENTS),
+            axis(Parameter::K1, &widths()),
+            axis(Parameter::N, &INDICES),
+            axis(Parameter::P, &EXPONENTS),
         ];
         let fresnel: Vec<Vec<f64>> = axes[1]
             .iter()
@@ -184,7 +202,7 @@ impl Search {
             add(&mut fixed[i % folds], &products, 1.0);
         }
         Ok(Self {
-            model,
+            weights: fixed_weights(model),
             axes,
             lobe,
             fixed,
@@ -206,7 +224,7 @@ impl Search {
             let [uu, ua, uy] = sum(products);
             // E is a fraction of the readings that are taken.
             let [uu, ua, uy, aa, ay] = [uu, ua, uy, aa, ay].map(|product| product / yy);
-            solve_for(self.model, &ProfileSums { uu, ua, uy, aa, ay })
+            solve_for(self.weights, &ProfileSums { uu, ua, uy, aa, ay })
         });
         Profile {
             search: self,
@@ -369,6 +387,7 @@ mod tests {
 
     use super::*;
     use crate::Measurements;
+    use crate::model::Model;
     use crate::synthetic::scan;
     use crate::watch::{Phase, Unwatched};
     use crate::weights::Weights;
@@ -390,7 +409,7 @@ mod tests {
 
     fn search_of(criterion: &Criterion, model: Model) -> Search {
         let progress = Progress::new(&Unwatched, Phase::GlobalCheck);
-        Search::new(criterion, model, &progress).unwrap()
+        Search::new(criterion, model.into(), &progress).unwrap()
     }
 
     fn at(k1: f64) -> ModelParameters {
@@ -414,7 +433,7 @@ mod tests {
                 assert_eq!(profile.index(profile.place(i)), i);
                 let error = criterion.error(&point.parameters);
                 assert!((error - point.error).abs() < 1e-12, "{model}");
-                let exact = best_weights(&criterion, model, point.parameters);
+                let exact = best_weights(&criterion, model.into(), point.parameters);
                 assert!((exact.error - point.error).abs() < 1e-12, "{model}");
             }
         }
@@ -459,7 +478,7 @@ mod tests {
         ) {
             let criterion = criterion(k2 + 1e-3, kd, log_k1.exp());
             for model in [Model::Lambert, Model::Specular, Model::Three] {
-                let best = best_weights(&criterion, model, at(width.exp()));
+                let best = best_weights(&criterion, model.into(), at(width.exp()));
                 let ModelParameters { k2, kd, .. } = best.parameters;
                 prop_assert!(k2 >= 0.0 && kd >= 0.0);
                 prop_assert!((criterion.error(&best.parameters) - best.error).abs() < 1e-13);

@@ -9,14 +9,14 @@ use crate::criterion::{Criterion, CriterionError, Segment};
 use crate::energy::{EnergyConstraint, conserve};
 use crate::initial::{InitialValues, initial_values};
 use crate::measurement::{Incidence, Measurement, Measurements};
-use crate::model::{Model, Parameter, USUAL_N};
+use crate::model::{Held, HeldModel, Model, Parameter, USUAL_N};
 use crate::profile::{ProfilePoint, Search};
 use crate::refractive_index::RefractiveIndex;
 use crate::robust::{Loss, RobustFit, fit_robustly};
 use crate::solver::{Ending, Method, minimise};
 use crate::watch::{Cancelled, Phase, Progress, Unwatched, Watch};
 use crate::weights::Weights;
-use crate::words::{as_degrees, as_optional_degrees, counted, in_degrees};
+use crate::words::{as_degrees, as_optional_degrees, counted, in_degrees, shortest};
 
 /// Version of the JSON that [`Fit`] is written as.
 pub const FORMAT_VERSION: u32 = 1;
@@ -62,6 +62,31 @@ pub struct FitOptions {
     /// `energy_limit_deg`); `None` leaves the fit free.
     #[serde(default, rename = "energy_limit_deg", with = "as_optional_degrees")]
     pub energy_limit: Option<f64>,
+    /// The parameters that are held at a value instead of being fitted; the model frees them.
+    #[serde(default, skip_serializing_if = "Held::is_empty")]
+    pub held: Held,
+}
+
+impl FitOptions {
+    /// The model with what is held of it.
+    pub fn held_model(&self) -> HeldModel {
+        HeldModel::new(self.model, self.held)
+    }
+
+    /// The parameters that are fitted, in their order: the model's free ones that are not held.
+    pub fn free(&self) -> Vec<Parameter> {
+        self.held_model().free().to_vec()
+    }
+
+    /// The same for another model, which holds what it has of the held parameters.
+    #[must_use]
+    pub fn of_model(&self, model: Model) -> Self {
+        Self {
+            model,
+            held: self.held.within(model),
+            ..self.clone()
+        }
+    }
 }
 
 /// Levenberg-Marquardt in both stages: on the scans in `data/measured/` at n = 1.5 it reaches the
@@ -81,6 +106,7 @@ impl Default for FitOptions {
             global_check: true,
             robust: None,
             energy_limit: None,
+            held: Held::none(),
         }
     }
 }
@@ -226,6 +252,30 @@ pub enum FitError {
     /// E is not defined.
     #[error(transparent)]
     Criterion(#[from] CriterionError),
+    /// A parameter is held that the model does not fit.
+    #[error(
+        "{parameter} cannot be held: model {model} fits {}",
+        .model.free().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    )]
+    NotFree {
+        /// The parameter.
+        parameter: Parameter,
+        /// The model.
+        model: Model,
+    },
+    /// A parameter is held outside of its range.
+    #[error(
+        "{parameter} = {value} cannot be held: expected {}", in_range(*.parameter)
+    )]
+    HeldOutOfRange {
+        /// The parameter.
+        parameter: Parameter,
+        /// Where it was to be held.
+        value: f64,
+    },
+    /// The held parameters leave no fit under rho(psi) <= 1.
+    #[error("with the held parameters rho(psi) is above 1 before {0} deg, whatever the others are")]
+    HeldAboveEnergy(f64),
     /// A minimiser failed.
     #[error("the minimiser failed: {0}")]
     Solver(String),
@@ -256,13 +306,25 @@ impl FitError {
     pub fn is_usage(&self) -> bool {
         matches!(
             self,
-            Self::NoRefractiveIndex(_) | Self::Criterion(CriterionError::NoSigma)
+            Self::NoRefractiveIndex(_)
+                | Self::Criterion(CriterionError::NoSigma)
+                | Self::NotFree { .. }
+                | Self::HeldOutOfRange { .. }
+                | Self::HeldAboveEnergy(_)
         )
     }
 }
 
 fn at_wavelength(wavelength_um: Option<f64>) -> String {
     wavelength_um.map_or_else(String::new, |w| format!(" at {w} um"))
+}
+
+/// The values that a parameter can take, in words.
+fn in_range(parameter: Parameter) -> String {
+    match parameter.range() {
+        (lowest, f64::INFINITY) => format!("a number from {lowest} on"),
+        (lowest, highest) => format!("one from {} to {}", shortest(lowest), shortest(highest)),
+    }
 }
 
 fn one() -> f64 {
@@ -283,9 +345,14 @@ impl Fit {
         self.options.model
     }
 
-    /// Readings that have a say, less the free parameters.
+    /// Whether a parameter was fitted: free in the model, and not held.
+    pub fn fits(&self, parameter: Parameter) -> bool {
+        self.options.held_model().frees(parameter)
+    }
+
+    /// Readings that have a say, less the fitted parameters.
     pub fn degrees_of_freedom(&self) -> usize {
-        (self.readings - self.weightless).saturating_sub(self.model().free().len())
+        (self.readings - self.weightless).saturating_sub(self.options.free().len())
     }
 }
 
@@ -324,7 +391,8 @@ pub(crate) fn fit_scan(
     let started = Instant::now();
     let readings = measurements.readings();
     let wavelength_um = single_wavelength(measurements)?;
-    let model = options.model;
+    options.held.check(options.model)?;
+    let model = options.held_model();
     check_readings(measurements, model)?;
     let n = refractive_index(measurements, options, wavelength_um)?;
 
@@ -416,15 +484,20 @@ fn after_the_stages(
     };
     if let Some(loss) = options.robust {
         let progress = Progress::begin(watch, Phase::Robust)?;
-        let (at, weighted, robust) =
-            fit_robustly(all, loss, parameters, options.model.free(), &progress)?;
+        let (at, weighted, robust) = fit_robustly(
+            all,
+            loss,
+            parameters,
+            options.held_model().free(),
+            &progress,
+        )?;
         (after.parameters, after.weighted, after.robust) = (at, Some(weighted), Some(robust));
     }
     if let Some(limit) = options.energy_limit {
         let criterion = after.weighted.as_ref().unwrap_or(all);
         let free = after.parameters;
         let progress = Progress::begin(watch, Phase::Energy)?;
-        after.parameters = conserve(criterion, options.model, &free, limit, &progress)?;
+        after.parameters = conserve(criterion, options.held_model(), &free, limit, &progress)?;
         after.energy = Some(EnergyConstraint {
             limit_deg: in_degrees(limit),
             free,
@@ -444,14 +517,15 @@ fn starting_point(
     options: &FitOptions,
     progress: &Progress<'_>,
 ) -> Result<(InitialValues, ModelParameters), Cancelled> {
-    let model = options.model;
+    let model = options.held_model();
     let Some(given) = options.start else {
-        let initial = initial_values(readings, incidences, n, own, progress)?;
+        let mut initial = initial_values(readings, incidences, n, own, progress)?;
+        initial.parameters = held_at(&options.held, initial.parameters);
         let start = ModelParameters::three(initial.parameters, n);
         return Ok((initial, model.start(start)));
     };
     let initial = InitialValues {
-        parameters: given.parameters(),
+        parameters: held_at(&options.held, given.parameters()),
         weights: None,
         width: None,
     };
@@ -463,18 +537,28 @@ fn starting_point(
     Ok((initial, model.start(ModelParameters { n, ..given })))
 }
 
-/// The refractive index that the options or the measurements state, or the usual one where it is
+/// The weights and the width with the values that they are held at.
+fn held_at(held: &Held, at: Parameters) -> Parameters {
+    Parameters {
+        k2: held.get(Parameter::K2).unwrap_or(at.k2),
+        kd: held.get(Parameter::Kd).unwrap_or(at.kd),
+        k1: held.get(Parameter::K1).unwrap_or(at.k1),
+    }
+}
+
+/// The refractive index that is held, or that the options or the measurements state, or the usual one where it is
 /// only a start.
 fn refractive_index(
     measurements: &Measurements,
     options: &FitOptions,
     wavelength_um: Option<f64>,
 ) -> Result<f64, FitError> {
-    let stated = options
-        .refractive_index
-        .as_ref()
-        .or(measurements.refractive_index.as_ref())
-        .and_then(|index| index.at(wavelength_um));
+    let stated = options.held.get(Parameter::N).or_else(|| {
+        let index = options.refractive_index.as_ref();
+        index
+            .or(measurements.refractive_index.as_ref())
+            .and_then(|index| index.at(wavelength_um))
+    });
     // It is where n starts, or nothing depends on it.
     let needed = !options.model.frees(Parameter::N) && options.model.frees(Parameter::K2);
     let usual = (!needed).then_some(USUAL_N);
@@ -483,7 +567,7 @@ fn refractive_index(
         .ok_or(FitError::NoRefractiveIndex(wavelength_um))
 }
 
-fn too_few(count: usize, model: Model) -> FitError {
+fn too_few(count: usize, model: HeldModel) -> FitError {
     FitError::TooFewReadings {
         count,
         parameters: model.free().len(),
@@ -498,7 +582,7 @@ fn single_wavelength(measurements: &Measurements) -> Result<Option<f64>, FitErro
     }
 }
 
-fn check_readings(measurements: &Measurements, model: Model) -> Result<(), FitError> {
+fn check_readings(measurements: &Measurements, model: HeldModel) -> Result<(), FitError> {
     let readings = measurements.readings();
     if readings.len() <= model.free().len() {
         return Err(too_few(readings.len(), model));
@@ -539,7 +623,7 @@ impl<'a> FirstStage<'a> {
         if options.stage1.is_none() || readings == all.len() {
             return everything(None);
         }
-        if readings <= options.model.free().len() {
+        if readings <= options.held_model().free().len() {
             let limit_deg = in_degrees(options.stage1_limit);
             let count = counted(readings, "reading");
             return everything(Some(format!("{count} up to {limit_deg} deg")));
@@ -564,8 +648,9 @@ fn run(
     progress: &Progress<'_>,
 ) -> Result<Stage, FitError> {
     let started = Instant::now();
-    let free = options.model.free();
-    let minimum = minimise(own, method, start, free, options.max_iterations, progress)?;
+    let model = options.held_model();
+    let most = options.max_iterations;
+    let minimum = minimise(own, method, start, model.free(), most, progress)?;
     Ok(Stage {
         method,
         parameters: minimum.parameters,
@@ -606,6 +691,7 @@ fn check_globally(
     progress: &Progress<'_>,
 ) -> Result<(ModelParameters, GlobalCheck), FitError> {
     let profile = search.whole();
+    let model = options.held_model();
     let mut parameters = stage2.parameters;
     for minimum in profile.minima() {
         // The minimum that was found is in this valley, and not above its grid point.
@@ -613,7 +699,7 @@ fn check_globally(
         if profile.is_next_to(&minimum, &parameters) && here <= all.error(&minimum.parameters) {
             continue;
         }
-        let polished = polish(all, minimum.parameters, options.model.free(), progress)?;
+        let polished = polish(all, minimum.parameters, model.free(), progress)?;
         if all.error(&polished) < here * (1.0 - LOWER) - ROUNDING {
             parameters = polished;
         }
@@ -622,7 +708,7 @@ fn check_globally(
         lower_minimum_taken: parameters != stage2.parameters,
         stage2_e_percent: stage2.e_percent.all,
         profile: profile.along(Parameter::K1),
-        profile_n: if options.model.frees(Parameter::N) {
+        profile_n: if model.frees(Parameter::N) {
             profile.along(Parameter::N)
         } else {
             Vec::new()

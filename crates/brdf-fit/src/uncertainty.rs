@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::criterion::Criterion;
-use crate::model::{K1_RANGE, Model, Parameter};
+use crate::model::{HeldModel, K1_RANGE, Parameter};
 use crate::profile::best_weights;
 use crate::solver::{Method, minimise};
 use crate::stages::{Fit, Fitted, ROUNDING};
@@ -196,7 +196,7 @@ impl Uncertainty {
             .map_or(1.0, |robust| robust.variance_factor);
         Self::of(
             &fitted.criterion,
-            fit.model(),
+            fit.options.held_model(),
             &fit.at(),
             given_sigma,
             factor,
@@ -214,7 +214,7 @@ impl Uncertainty {
         Self {
             noise: Noise::Residuals,
             degrees_of_freedom: fit.degrees_of_freedom(),
-            estimates: fit.model().free().iter().map(estimate).collect(),
+            estimates: fit.options.free().iter().map(estimate).collect(),
             covered: Vec::new(),
             covariance: Vec::new(),
         }
@@ -233,7 +233,7 @@ impl Uncertainty {
     /// is 1 without one.
     pub(crate) fn of(
         criterion: &Criterion,
-        model: Model,
+        model: HeldModel,
         at: &ModelParameters,
         given_sigma: bool,
         variance_factor: f64,
@@ -394,7 +394,7 @@ fn quantiles(degrees_of_freedom: Option<usize>) -> [f64; 2] {
 /// Follows the profile of E along one parameter.
 struct Profiler<'a> {
     criterion: &'a Criterion,
-    model: Model,
+    model: HeldModel,
     at: &'a ModelParameters,
     error: f64,
     covered: &'a [Parameter],
@@ -736,6 +736,7 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::Model;
     use crate::report::{Depth, Report};
     use crate::synthetic::scan;
     use crate::{FitOptions, Measurements, RefractiveIndex};
@@ -787,7 +788,7 @@ mod tests {
             n: 1.5,
             p: 1.0,
         };
-        let error = |k1: f64| best_weights(&criterion, Model::Three, at(k1)).error;
+        let error = |k1: f64| best_weights(&criterion, Model::Three.into(), at(k1)).error;
         let lowest = error(estimate.value);
         let t = quantiles(Some(uncertainty.degrees_of_freedom))[1];
         let limit = lowest * (1.0 + t * t / uncertainty.degrees_of_freedom as f64);

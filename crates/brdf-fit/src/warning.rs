@@ -270,7 +270,7 @@ fn lowest_e_percent(
     let Ok(criterion) = Criterion::new(scan, family, fit.n, weights) else {
         return Ok(None);
     };
-    let search = Search::new(&criterion, Model::Three, progress)?;
+    let search = Search::new(&criterion, Model::Three.into(), progress)?;
     Ok(Some(100.0 * search.whole().lowest().error))
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use brdf_fit::energy::USUAL_LIMIT_DEG;
-use brdf_fit::model::Model;
+use brdf_fit::model::{Held, Model};
 use brdf_fit::output::{resolved, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{
@@ -51,6 +51,11 @@ struct Arguments {
     /// [default: what the file says in a column n or a line "# refractive_index: 1.5"]
     #[arg(long, value_name = "INDEX")]
     n: Option<RefractiveIndex>,
+
+    /// Parameters to hold at a value instead of fitting them, as NAME=VALUE pairs such as
+    /// k1=0.2,kD=0.05; only those that the model fits
+    #[arg(long, value_name = "PAIRS")]
+    hold: Option<Held>,
 
     /// Method of stage 1
     #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_and("none"))]
@@ -219,6 +224,7 @@ impl Arguments {
             max_iterations: self.max_iterations,
             robust: self.robust,
             energy_limit: self.energy_conserving.map(f64::to_radians),
+            held: self.hold.unwrap_or_default(),
             ..FitOptions::default()
         }
     }
@@ -239,11 +245,8 @@ impl Arguments {
         if !(self.params_only && self.compare) {
             return vec![options];
         }
-        let of = |model| FitOptions {
-            model,
-            ..options.clone()
-        };
-        Model::COMPARED.into_iter().map(of).collect()
+        let of = |&model: &Model| options.of_model(model);
+        Model::COMPARED.iter().map(of).collect()
     }
 
     fn choice(&self) -> ModelChoice {

@@ -31,7 +31,7 @@ impl Title {
                 parameters(fit),
                 short(fit.e_percent)
             ),
-            theory: format!("model {model}, {}", model.description()),
+            theory: format!("model {model}, {}{}", model.description(), held(fit)),
         }
     }
 }
@@ -65,8 +65,21 @@ fn parameters(fit: &Fit) -> String {
     let shown = Parameter::ALL
         .into_iter()
         .filter(|&parameter| model.frees(parameter) || shown_fixed(model, parameter));
-    let words = shown.map(|parameter| format!("{parameter} = {}", short(parameter.of(&at))));
+    let words = shown.map(|parameter| {
+        let held = fit.options.held.get(parameter).map_or("", |_| " (held)");
+        format!("{parameter} = {}{held}", short(parameter.of(&at)))
+    });
     words.collect::<Vec<_>>().join(", ")
+}
+
+/// What is held, in the words of a caption.
+fn held(fit: &Fit) -> String {
+    let held = &fit.options.held;
+    if held.is_empty() {
+        String::new()
+    } else {
+        format!(", {held} held")
+    }
 }
 
 fn shown_fixed(model: Model, parameter: Parameter) -> bool {

@@ -61,7 +61,7 @@ fn section(report: &Report, figures: &[Figure]) -> String {
     text += &counted(report.readings, "reading");
     if let Some(fit) = &report.fit {
         let model = fit.model();
-        let fitted = if model.frees(Parameter::N) {
+        let fitted = if fit.fits(Parameter::N) {
             " (fitted)"
         } else {
             ""
@@ -73,6 +73,9 @@ fn section(report: &Report, figures: &[Figure]) -> String {
             shortest(fit.n),
             fit.e_percent
         );
+        if !fit.options.held.is_empty() {
+            let _ = write!(text, "; held: {}", fit.options.held);
+        }
     }
     text += "</p>\n";
     if let Some(error) = &report.error {

@@ -159,11 +159,7 @@ impl Report {
     ) -> Result<(), FitError> {
         // What cannot be fitted at all is told by the paper's model.
         self.model = sufficient_model(measurements, options, watch)?;
-        let options = FitOptions {
-            model: self.model,
-            ..options.clone()
-        };
-        self.fill(measurements, &options, depth, watch)
+        self.fill(measurements, &options.of_model(self.model), depth, watch)
     }
 
     fn fill(
@@ -183,7 +179,8 @@ impl Report {
         let progress = Progress::begin(watch, Phase::Uncertainty)?;
         let uncertainty = Uncertainty::of_fit(&fitted, &progress)?;
         self.warnings = warnings(measurements, fit, &uncertainty, &progress)?;
-        self.uncertainty = Some(uncertainty);
+        // Where everything is held there is nothing to be uncertain of.
+        self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
         if depth > Depth::Fit {
             let compare = depth == Depth::Compared;
             self.assessment = Some(assess_watched(measurements, fit, compare, watch)?);

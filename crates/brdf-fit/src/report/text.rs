@@ -59,7 +59,7 @@ impl Report {
             .map_or_else(|| "wavelength not stated".to_owned(), |w| format!("{w} um"));
         let _ = write!(text, "  {wavelength}, ");
         if let Some(fit) = &self.fit {
-            let fitted = if fit.model().frees(Parameter::N) {
+            let fitted = if fit.fits(Parameter::N) {
                 " (fitted)"
             } else {
                 ""
@@ -104,7 +104,7 @@ fn stage_table(fit: &Fit) -> String {
             1e6 * stage.seconds,
             stage.method.short_name(),
             stage.ending,
-            further_parameters(fit.model(), &stage.parameters)
+            further_parameters(fit, &stage.parameters)
         )
     };
     line(
@@ -145,31 +145,37 @@ fn stage_table(fit: &Fit) -> String {
     if !weights.is_empty() {
         let _ = writeln!(text, "  readings weighted by {weights}");
     }
+    let held = &fit.options.held;
+    if !held.is_empty() {
+        let _ = writeln!(text, "  held: {held}");
+    }
     let Parameters { k2, kd, k1 } = fit.parameters;
-    for (on_bound, name) in [
-        (k2 == 0.0, "k2 = 0"),
-        (kd == 0.0, "kD = 0"),
+    for (parameter, on_bound, name) in [
+        (Parameter::K2, k2 == 0.0, "k2 = 0"),
+        (Parameter::Kd, kd == 0.0, "kD = 0"),
         (
+            Parameter::K1,
             k2 > 0.0 && k1 == K1_RANGE.0,
             "k1 = 1e-6, the smallest that is searched",
         ),
         (
+            Parameter::K1,
             k2 > 0.0 && k1 == K1_RANGE.1,
             "k1 = 1e3, the largest that is searched",
         ),
     ] {
-        if on_bound {
+        if on_bound && held.get(parameter).is_none() {
             let _ = writeln!(text, "  on its bound: {name}");
         }
     }
     text
 }
 
-/// n and p of a stage, where the model has them free.
-fn further_parameters(model: Model, at: &ModelParameters) -> String {
+/// n and p of a stage, where they are fitted.
+fn further_parameters(fit: &Fit, at: &ModelParameters) -> String {
     let mut text = String::new();
     for parameter in [Parameter::N, Parameter::P] {
-        if model.frees(parameter) {
+        if fit.fits(parameter) {
             let _ = write!(text, "; {parameter} = {}", digits(parameter.of(at)));
         }
     }
@@ -215,6 +221,9 @@ fn global_check_line(fit: &Fit) -> String {
             digits(fit.e_percent),
             digits(check.stage2_e_percent)
         ),
+        Some(_) if fit.options.held.get(Parameter::K1).is_some() => {
+            "  global check: no lower minimum at the width that is held\n".to_owned()
+        }
         Some(check) => format!(
             "  global check: no lower minimum for k1 from {:.0e} to {:.0e} ({} widths)\n",
             check

@@ -1,6 +1,8 @@
 //! The models that can be fitted: the paper's, its simpler and its richer relatives, and the
 //! neighbours that a user would otherwise take.
 
+mod held;
+
 use std::fmt;
 use std::str::FromStr;
 
@@ -8,6 +10,8 @@ use brdf_core::brdf::N_DOMAIN;
 use brdf_core::facet::P_DOMAIN;
 use brdf_core::{Family, ModelParameters};
 use serde::{Deserialize, Serialize};
+
+pub use held::{Held, HeldModel};
 
 /// The range of k1 in a fit. Far below the resolution of any goniometer at one end; at the other
 /// the facet distribution no longer changes (its limit is sec alpha).
@@ -81,6 +85,21 @@ impl fmt::Display for Parameter {
             Self::N => "n",
             Self::P => "p",
         })
+    }
+}
+
+/// Its name, in capitals or not.
+impl FromStr for Parameter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|parameter| parameter.to_string().eq_ignore_ascii_case(text))
+            .ok_or_else(|| {
+                let names = Self::ALL.map(|parameter| parameter.to_string()).join(", ");
+                format!("\"{text}\" is no parameter: expected one of {names}")
+            })
     }
 }
 
@@ -181,20 +200,20 @@ impl Model {
         self.free().contains(&parameter)
     }
 
+    /// The value of a parameter that the model does not have, as if it had it: `None` where it is
+    /// free, and for the index, which others state.
+    pub fn neutral(self, parameter: Parameter) -> Option<f64> {
+        match parameter {
+            _ if self.frees(parameter) => None,
+            Parameter::K2 | Parameter::Kd => Some(0.0),
+            Parameter::K1 | Parameter::P => Some(1.0),
+            Parameter::N => None,
+        }
+    }
+
     /// A start of this model: the parameters that it does not have take their neutral values.
-    pub fn start(self, mut at: ModelParameters) -> ModelParameters {
-        match self {
-            Self::Lambert => (at.k2, at.k1, at.p) = (0.0, 1.0, 1.0),
-            Self::Specular => (at.kd, at.p) = (0.0, 1.0),
-            Self::PowerN => {}
-            _ => at.p = 1.0,
-        }
-        for &parameter in self.free() {
-            let (lowest, highest) = parameter.range();
-            let value = parameter.of(&at).clamp(lowest, highest);
-            parameter.set(&mut at, value);
-        }
-        at
+    pub fn start(self, at: ModelParameters) -> ModelParameters {
+        HeldModel::from(self).start(at)
     }
 
     /// Its name on the command line and in files.

@@ -199,6 +199,11 @@ fn usage_that_is_none() {
             vec!["--weights", "sigma"],
             "need the standard deviation of every reading",
         ),
+        (vec!["--stage1", "none", "--stage2", "none"], "no stage"),
+        (
+            vec!["--stage2", "none", "--stage1-limit", "5"],
+            "stage 1 alone cannot be fitted: 0 readings up to 5 deg",
+        ),
         (vec!["--hold", "k3=1"], "\"k3\" is no parameter"),
         (vec!["--hold", "k1"], "expected NAME=VALUE"),
         (vec!["--hold", "k1=2000"], "k1 = 2000 cannot be held"),

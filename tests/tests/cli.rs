@@ -236,6 +236,10 @@ fn stages_methods_limit_and_weights_can_be_chosen() {
     assert!(text.contains("NM: simplex converged"));
     assert!(text.contains("stage 1: psi <= 30 deg"));
     assert!(!run(&["--stage1", "none"]).contains("stage 1"));
+    let alone = run(&["--stage2", "none"]);
+    assert!(alone.contains("stage 1 alone: all that follows is of psi <= 60 deg, 85 readings"));
+    assert!(!alone.contains("stage 2") && alone.contains("0.655175"));
+    assert!(run(&["--stage2", "none", "--params-only"]).contains("ok (stage 1 alone)"));
     assert!(run(&["--stage1-limit", "5"]).contains("stage 1 left out: 1 reading up to 5 deg"));
     let weighted = run(&["--g1", "60=1,70=0", "--g2", "-90=0.5,0=1"]);
     assert!(!weighted.contains("2.83966"));

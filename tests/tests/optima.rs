@@ -35,13 +35,13 @@ fn reaches_every_optimum(folder: &Path, table: Vec<ExpectedOptimum>) {
                 let options = FitOptions {
                     refractive_index: Some(RefractiveIndex::Same(row.n)),
                     stage1: Some(stage1),
-                    stage2,
+                    stage2: Some(stage2),
                     ..FitOptions::default()
                 };
                 let fit = fit(&scan, &options).unwrap();
                 // Where the limit leaves out no reading, stage 1 is over all of them.
                 let first = fit.stage1.unwrap().e_percent.own;
-                let second = fit.stage2.e_percent.own;
+                let second = fit.stage2.unwrap().e_percent.own;
                 for (found, optimum) in [(first, row.up_to_60.0), (second, row.all.0)] {
                     let excess = found / optimum - 1.0;
                     let name = format!("{} {} {stage1} {stage2}", row.file, row.wavelength_um);

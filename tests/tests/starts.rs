@@ -36,7 +36,7 @@ fn random_starts_end_at_the_optimum() {
         let optimum = fit(&scan, &options).unwrap().e_percent;
         options.stage1 = None;
         for method in [Method::LevenbergMarquardt, Method::NelderMead] {
-            options.stage2 = method;
+            options.stage2 = Some(method);
             let mut generator = generator(1);
             let mut reached_by_stage2 = 0;
             for _ in 0..STARTS {
@@ -55,7 +55,7 @@ fn random_starts_end_at_the_optimum() {
                     scan.source,
                     options.start
                 );
-                reached_by_stage2 += usize::from(reached(fit.stage2.e_percent.all));
+                reached_by_stage2 += usize::from(reached(fit.stage2.unwrap().e_percent.all));
             }
             println!(
                 "{} {:?} {method}: {reached_by_stage2} of {STARTS}",

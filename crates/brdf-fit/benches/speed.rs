@@ -91,7 +91,7 @@ fn fits(c: &mut Criterion) {
     let options = |stage1, stage2, global_check| FitOptions {
         refractive_index: Some(RefractiveIndex::Same(N)),
         stage1,
-        stage2,
+        stage2: Some(stage2),
         global_check,
         ..FitOptions::default()
     };

@@ -200,9 +200,10 @@ pub(crate) fn assess_watched(
 ) -> Result<Assessment, FitError> {
     let progress = Progress::begin(watch, Phase::Assessment)?;
     let accepted = accepted_readings(measurements, fit);
-    let scan = &accepted
-        .as_ref()
-        .unwrap_or(measurements)
+    let accepted = accepted.as_ref().unwrap_or(measurements);
+    let scan = &fit
+        .options
+        .fitted_readings(accepted)
         .thinned(ASSESSED_READINGS);
     let models = if compare {
         Model::ALL.as_slice()
@@ -272,7 +273,10 @@ pub(crate) fn sufficient_model(
     watch: &dyn Watch,
 ) -> Result<Model, Cancelled> {
     let progress = Progress::begin(watch, Phase::Assessment)?;
-    let (scan, options) = (measurements.thinned(ASSESSED_READINGS), plain(options));
+    let scan = options
+        .fitted_readings(measurements)
+        .thinned(ASSESSED_READINGS);
+    let options = plain(options);
     let mut rungs = Vec::new();
     for model in Model::LADDER {
         rungs.extend(unless_cancelled(rung(&scan, model, &options, &progress))?);

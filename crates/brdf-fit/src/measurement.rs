@@ -254,6 +254,16 @@ impl Measurements {
         self.kept(kept)
     }
 
+    /// The readings of the incidences up to an angle in radians, that angle included.
+    #[must_use]
+    pub fn up_to(&self, psi: f64) -> Self {
+        let incidences = self.incidences();
+        let chosen = up_to(&incidences, psi).iter();
+        let mut kept: Vec<usize> = chosen.flat_map(|i| i.readings.iter().copied()).collect();
+        kept.sort_unstable();
+        self.kept(kept)
+    }
+
     /// Some of the readings, by their indices, with all that the file says of them.
     pub(crate) fn kept(&self, indices: impl IntoIterator<Item = usize>) -> Self {
         Self {
@@ -271,6 +281,13 @@ impl Measurements {
             readings: Vec::new(),
         }
     }
+}
+
+/// Of incidences in ascending order those up to an angle in radians, that angle included.
+pub(crate) fn up_to(incidences: &[Incidence], psi: f64) -> &[Incidence] {
+    // A rounding of the angle shall not exclude the limit itself.
+    let limit = psi + 1e-9;
+    &incidences[..incidences.partition_point(|incidence| incidence.psi <= limit)]
 }
 
 #[expect(

@@ -1,5 +1,6 @@
 //! The two stages of the fit, and the check against the global optimum.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use brdf_core::{ModelParameters, Parameters};
@@ -8,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use crate::criterion::{Criterion, CriterionError, Segment};
 use crate::energy::{EnergyConstraint, conserve};
 use crate::initial::{InitialValues, initial_values};
-use crate::measurement::{Incidence, Measurement, Measurements};
+use crate::measurement::{Incidence, Measurement, Measurements, up_to};
 use crate::model::{Held, HeldModel, Model, Parameter, USUAL_N};
 use crate::profile::{ProfilePoint, Search};
 use crate::refractive_index::RefractiveIndex;
@@ -49,8 +50,9 @@ pub struct FitOptions {
     /// Largest incidence angle of stage 1, in radians (in JSON in degrees, `stage1_limit_deg`).
     #[serde(rename = "stage1_limit_deg", with = "as_degrees")]
     pub stage1_limit: f64,
-    /// Method of stage 2.
-    pub stage2: Method,
+    /// Method of stage 2; `None` fits stage 1 alone: the fit, and all that it is worth, is then of
+    /// the readings up to the limit of stage 1. One stage at least is asked for.
+    pub stage2: Option<Method>,
     /// Largest number of iterations of each stage.
     pub max_iterations: u64,
     /// Whether the profile search over k1 checks the result of stage 2.
@@ -78,6 +80,22 @@ impl FitOptions {
         self.held_model().free().to_vec()
     }
 
+    /// The readings that a fit is of: those up to the limit of stage 1 where that is alone.
+    pub fn fitted_readings<'a>(&self, measurements: &'a Measurements) -> Cow<'a, Measurements> {
+        if self.stage2.is_some() {
+            Cow::Borrowed(measurements)
+        } else {
+            Cow::Owned(measurements.up_to(self.stage1_limit))
+        }
+    }
+
+    /// What a fit is of, where that is not all readings: `psi <= 60 deg`.
+    pub(crate) fn scope(&self) -> Option<String> {
+        let limit = in_degrees(self.stage1_limit);
+        let alone = self.stage2.is_none();
+        alone.then(|| format!("psi <= {limit} deg"))
+    }
+
     /// The same for another model, which holds what it has of the held parameters.
     #[must_use]
     pub fn of_model(&self, model: Model) -> Self {
@@ -101,7 +119,7 @@ impl Default for FitOptions {
             start: None,
             stage1: Some(Method::LevenbergMarquardt),
             stage1_limit: 60_f64.to_radians(),
-            stage2: Method::LevenbergMarquardt,
+            stage2: Some(Method::LevenbergMarquardt),
             max_iterations: 10_000,
             global_check: true,
             robust: None,
@@ -125,13 +143,13 @@ pub struct Fit {
     pub p: f64,
     /// The settings of the fit.
     pub options: FitOptions,
-    /// How many readings were fitted.
+    /// How many readings were fitted: all, or those of stage 1 where it is alone.
     pub readings: usize,
     /// How many of them have a weight of zero, and so no say.
     pub weightless: usize,
-    /// The fitted parameters: those of stage 2, or of the lower minimum that the check found.
+    /// The fitted parameters: those of the last stage, or of the lower minimum that the check found.
     pub parameters: Parameters,
-    /// E over all readings, in percent.
+    /// E over the fitted readings, in percent.
     pub e_percent: f64,
     /// E of each incidence by itself.
     pub incidences: Vec<IncidenceError>,
@@ -143,8 +161,8 @@ pub struct Fit {
     pub stage1: Option<Stage>,
     /// Why stage 1 was left out although it was asked for.
     pub stage1_left_out: Option<String>,
-    /// Stage 2.
-    pub stage2: Stage,
+    /// Stage 2; `None` where stage 1 is alone.
+    pub stage2: Option<Stage>,
     /// The check against the global optimum; `None` where it was left out.
     pub global_check: Option<GlobalCheck>,
     /// What another loss than the square did, where one was asked for.
@@ -201,9 +219,9 @@ pub struct IncidenceError {
 /// What the profile search over k1 found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GlobalCheck {
-    /// Whether stage 2 had missed a lower minimum, which then was taken.
+    /// Whether the last stage had missed a lower minimum, which then was taken.
     pub lower_minimum_taken: bool,
-    /// E of stage 2 before, in percent.
+    /// E of the last stage before, over the fitted readings, in percent.
     pub stage2_e_percent: f64,
     /// The profile over k1: the lowest E at each; a single point where the model has no k1.
     pub profile: Vec<ProfilePoint>,
@@ -252,6 +270,12 @@ pub enum FitError {
     /// E is not defined.
     #[error(transparent)]
     Criterion(#[from] CriterionError),
+    /// Neither stage is asked for.
+    #[error("no stage: ask for stage 1, for stage 2, or for both")]
+    NoStage,
+    /// Stage 1 is asked for alone, and has no readings that could be fitted.
+    #[error("stage 1 alone cannot be fitted: {0}")]
+    Stage1Alone(String),
     /// A parameter is held that the model does not fit.
     #[error(
         "{parameter} cannot be held: model {model} fits {}",
@@ -308,6 +332,8 @@ impl FitError {
             self,
             Self::NoRefractiveIndex(_)
                 | Self::Criterion(CriterionError::NoSigma)
+                | Self::NoStage
+                | Self::Stage1Alone(_)
                 | Self::NotFree { .. }
                 | Self::HeldOutOfRange { .. }
                 | Self::HeldAboveEnergy(_)
@@ -345,6 +371,11 @@ impl Fit {
         self.options.model
     }
 
+    /// The last of its stages.
+    pub fn last_stage(&self) -> Option<&Stage> {
+        self.stage2.as_ref().or(self.stage1.as_ref())
+    }
+
     /// Whether a parameter was fitted: free in the model, and not held.
     pub fn fits(&self, parameter: Parameter) -> bool {
         self.options.held_model().frees(parameter)
@@ -357,7 +388,7 @@ impl Fit {
 }
 
 /// Fits a model to a scan of one wavelength: initial values, stage 1 over the incidences up to the
-/// limit, stage 2 over all, and the check against the global optimum.
+/// limit, stage 2 over all (or one of the stages alone), and the check against the global optimum.
 ///
 /// The result is the same in every run, but for the times.
 pub fn fit(measurements: &Measurements, options: &FitOptions) -> Result<Fit, FitError> {
@@ -389,6 +420,9 @@ pub(crate) fn fit_scan(
     watch: &dyn Watch,
 ) -> Result<Fitted, FitError> {
     let started = Instant::now();
+    if options.stage1.or(options.stage2).is_none() {
+        return Err(FitError::NoStage);
+    }
     let readings = measurements.readings();
     let wavelength_um = single_wavelength(measurements)?;
     options.held.check(options.model)?;
@@ -397,13 +431,17 @@ pub(crate) fn fit_scan(
     let n = refractive_index(measurements, options, wavelength_um)?;
 
     let all = Criterion::new(measurements, model.family(), n, &options.weights)?;
-    let weightless = all.weightless();
-    if !all.suffices_for(model.free()) {
-        return Err(too_few(readings.len() - weightless, model));
-    }
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
+    if let (None, Some(reason)) = (options.stage2, &first.left_out) {
+        return Err(FitError::Stage1Alone(reason.clone()));
+    }
     let own = first.criterion.as_ref().unwrap_or(&all);
+    let fitted = options.stage2.map_or(own, |_| &all);
+    let (count, weightless) = (fitted.len(), fitted.weightless());
+    if !fitted.suffices_for(model.free()) {
+        return Err(too_few(count - weightless, model));
+    }
     let method1 = options.stage1.filter(|_| first.left_out.is_none());
     let before = Progress::before(watch, method1.map_or(Phase::Stage2, |_| Phase::Stage1));
     let (initial, start) = starting_point(readings, first.incidences, n, own, options, &before)?;
@@ -416,22 +454,14 @@ pub(crate) fn fit_scan(
         .map(|method| stage(method, Phase::Stage1, own, start))
         .transpose()?;
     let stage2_start = stage1.map_or(start, |stage| stage.parameters);
-    let stage2 = stage(options.stage2, Phase::Stage2, &all, stage2_start)?;
-    let mut parameters = stage2.parameters;
-    let mut global_check = None;
-    let mut search = None;
-    if options.global_check {
-        let started = Instant::now();
-        let progress = Progress::begin(watch, Phase::GlobalCheck)?;
-        let searched = search.insert(Search::new(&all, model, &progress)?);
-        let mut check = check_globally(&all, searched, stage2, options, &progress)?;
-        check.1.seconds = started.elapsed().as_secs_f64();
-        parameters = check.0;
-        global_check = Some(check.1);
-    }
-
-    let after = after_the_stages(&all, parameters, options, watch)?;
-    parameters = after.parameters;
+    let stage2 = options
+        .stage2
+        .map(|method| stage(method, Phase::Stage2, &all, stage2_start))
+        .transpose()?;
+    let last = stage2.or(stage1).ok_or(FitError::NoStage)?;
+    let checked = check_globally(fitted, last, options, watch)?;
+    let after = after_the_stages(fitted, checked.parameters, options, watch)?;
+    let parameters = after.parameters;
 
     let fit = Fit {
         format_version: FORMAT_VERSION,
@@ -439,25 +469,26 @@ pub(crate) fn fit_scan(
         n: parameters.n,
         p: parameters.p,
         options: options.clone(),
-        readings: readings.len(),
+        readings: count,
         weightless,
         parameters: parameters.parameters(),
-        e_percent: 100.0 * all.error(&parameters),
-        incidences: errors_by_incidence(&all, &parameters),
+        e_percent: 100.0 * fitted.error(&parameters),
+        incidences: errors_by_incidence(fitted, &parameters),
         initial_e_percent: own_and_all(own, &all, &start),
         initial,
         stage1,
         stage1_left_out: first.left_out,
         stage2,
-        global_check,
+        global_check: checked.report,
         robust: after.robust,
         energy: after.energy,
         seconds: started.elapsed().as_secs_f64(),
     };
+    let alone = first.criterion.filter(|_| options.stage2.is_none());
     Ok(Fitted {
         fit,
-        criterion: after.weighted.unwrap_or(all),
-        search,
+        criterion: after.weighted.or(alone).unwrap_or(all),
+        search: checked.search,
     })
 }
 
@@ -607,10 +638,7 @@ struct FirstStage<'a> {
 
 impl<'a> FirstStage<'a> {
     fn choose(all: &Criterion, incidences: &'a [Incidence], options: &FitOptions) -> Self {
-        // A rounding of the angle shall not exclude the limit itself.
-        let limit = options.stage1_limit + 1e-9;
-        let count = incidences.partition_point(|incidence| incidence.psi <= limit);
-        let chosen = &incidences[..count];
+        let chosen = up_to(incidences, options.stage1_limit);
         let readings: usize = chosen
             .iter()
             .map(|incidence| incidence.readings.len())
@@ -628,7 +656,7 @@ impl<'a> FirstStage<'a> {
             let count = counted(readings, "reading");
             return everything(Some(format!("{count} up to {limit_deg} deg")));
         }
-        match all.subset(|i| i < count) {
+        match all.subset(|i| i < chosen.len()) {
             Ok(criterion) => Self {
                 incidences: chosen,
                 criterion: Some(criterion),
@@ -682,40 +710,61 @@ pub(crate) fn polish(
         .map(|minimum| minimum.parameters)
 }
 
-/// Looks for a minimum below that of stage 2, and takes it where there is one.
+/// What the global check came to; the parameters are those of the last stage where it is left out.
+struct Checked {
+    parameters: ModelParameters,
+    report: Option<GlobalCheck>,
+    search: Option<Search>,
+}
+
+/// Looks for a minimum below that of the last stage, and takes it where there is one.
 fn check_globally(
-    all: &Criterion,
-    search: &Search,
-    stage2: Stage,
+    criterion: &Criterion,
+    last: Stage,
     options: &FitOptions,
-    progress: &Progress<'_>,
-) -> Result<(ModelParameters, GlobalCheck), FitError> {
-    let profile = search.whole();
+    watch: &dyn Watch,
+) -> Result<Checked, FitError> {
+    let mut parameters = last.parameters;
+    if !options.global_check {
+        return Ok(Checked {
+            parameters,
+            report: None,
+            search: None,
+        });
+    }
+    let started = Instant::now();
+    let progress = Progress::begin(watch, Phase::GlobalCheck)?;
     let model = options.held_model();
-    let mut parameters = stage2.parameters;
+    let search = Search::new(criterion, model, &progress)?;
+    let profile = search.whole();
     for minimum in profile.minima() {
         // The minimum that was found is in this valley, and not above its grid point.
-        let here = all.error(&parameters);
-        if profile.is_next_to(&minimum, &parameters) && here <= all.error(&minimum.parameters) {
+        let here = criterion.error(&parameters);
+        if profile.is_next_to(&minimum, &parameters) && here <= criterion.error(&minimum.parameters)
+        {
             continue;
         }
-        let polished = polish(all, minimum.parameters, model.free(), progress)?;
-        if all.error(&polished) < here * (1.0 - LOWER) - ROUNDING {
+        let polished = polish(criterion, minimum.parameters, model.free(), &progress)?;
+        if criterion.error(&polished) < here * (1.0 - LOWER) - ROUNDING {
             parameters = polished;
         }
     }
-    let check = GlobalCheck {
-        lower_minimum_taken: parameters != stage2.parameters,
-        stage2_e_percent: stage2.e_percent.all,
+    let report = GlobalCheck {
+        lower_minimum_taken: parameters != last.parameters,
+        stage2_e_percent: last.e_percent.own,
         profile: profile.along(Parameter::K1),
         profile_n: if model.frees(Parameter::N) {
             profile.along(Parameter::N)
         } else {
             Vec::new()
         },
-        seconds: 0.0,
+        seconds: started.elapsed().as_secs_f64(),
     };
-    Ok((parameters, check))
+    Ok(Checked {
+        parameters,
+        report: Some(report),
+        search: Some(search),
+    })
 }
 
 pub(crate) fn errors_by_incidence(all: &Criterion, at: &ModelParameters) -> Vec<IncidenceError> {
@@ -738,7 +787,7 @@ pub(crate) fn errors_by_incidence(all: &Criterion, at: &ModelParameters) -> Vec<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Depth;
+    use crate::report::{Depth, Report};
     use crate::synthetic::scan;
 
     fn truth() -> Parameters {
@@ -769,7 +818,7 @@ mod tests {
             .map(|i| i.readings)
             .sum();
         assert_eq!(fit.stage1.unwrap().readings, up_to_60);
-        assert_eq!(fit.stage2.readings, fit.readings);
+        assert_eq!(fit.stage2.unwrap().readings, fit.readings);
         assert!(up_to_60 < fit.readings);
     }
 
@@ -825,7 +874,7 @@ mod tests {
             let fit = fit(&scan, &options()).unwrap();
             assert!((fit.parameters.k1 / 0.2 - 1.0).abs() < 0.1);
             assert!((fit.parameters.k2 / (0.3 * size) - 1.0).abs() < 0.1);
-            let report = crate::report::Report::of(&scan, &options(), Depth::Fit).0;
+            let report = Report::of(&scan, &options(), Depth::Fit).0;
             assert_eq!(report.warnings.len(), usize::from(size > 1.0));
         }
     }
@@ -878,5 +927,106 @@ mod tests {
         assert!(json.contains("\"stage1_limit_deg\":60.0"));
         let back: Fit = serde_json::from_str(&json).unwrap();
         assert!(back == fit, "the numbers differ");
+    }
+
+    fn alone() -> FitOptions {
+        FitOptions {
+            stage2: None,
+            ..options()
+        }
+    }
+
+    fn rippled() -> Measurements {
+        let mut readings = scan(truth(), 1.5).readings().to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.05 * (2.4 * i as f64).sin();
+        }
+        Measurements::new("test", readings).unwrap()
+    }
+
+    /// All of it is that of a scan that ends at the limit.
+    #[test]
+    fn stage_1_alone_is_the_fit_of_a_scan_that_ends_at_its_limit() {
+        let (whole, options) = (rippled(), alone());
+        let shorter = whole.up_to(options.stage1_limit);
+        let (report, error) = Report::of(&whole, &options, Depth::Assessed);
+        assert_eq!(error, None);
+        let (expected, _) = Report::of(&shorter, &self::options(), Depth::Assessed);
+        let fit = report.fit.as_ref().unwrap();
+        let short_fit = expected.fit.as_ref().unwrap();
+        let same = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
+        assert_eq!((fit.readings, fit.stage2), (shorter.readings().len(), None));
+        assert_eq!(fit.incidences.len(), short_fit.incidences.len());
+        same(fit.e_percent, short_fit.e_percent);
+        same(fit.parameters.k1, short_fit.parameters.k1);
+        let check = fit.global_check.as_ref().unwrap();
+        assert!(!check.lower_minimum_taken);
+        same(check.stage2_e_percent, fit.e_percent);
+        let errors = |report: &Report| {
+            let covariance = &report.uncertainty.as_ref().unwrap().covariance;
+            [covariance[0][0], covariance[2][2]]
+        };
+        same(errors(&report)[0], errors(&expected)[0]);
+        same(errors(&report)[1], errors(&expected)[1]);
+        let assessed = [&report, &expected].map(|r| r.assessment.as_ref().unwrap());
+        assert_eq!(assessed[0].readings, assessed[1].readings);
+        for (a, b) in assessed[0].models.iter().zip(&assessed[1].models) {
+            same(a.e_percent, b.e_percent);
+            same(
+                a.predicted_e_percent.unwrap(),
+                b.predicted_e_percent.unwrap(),
+            );
+        }
+        assert_eq!(report.warnings.len(), expected.warnings.len());
+        // E over all readings is told of the stage alone.
+        let stage = fit.stage1.unwrap();
+        let family = options.model.family();
+        let all = Criterion::new(&whole, family, 1.5, &options.weights).unwrap();
+        same(stage.e_percent.all, 100.0 * all.error(&stage.parameters));
+        assert!(stage.e_percent.all != stage.e_percent.own);
+    }
+
+    #[test]
+    fn what_was_fitted_of_stage_1_alone_is_said() {
+        let (report, _) = Report::of(&rippled(), &alone(), Depth::Fit);
+        assert_eq!(report.status(), "ok (stage 1 alone)");
+        let (text, readings) = (report.text(), report.fit.as_ref().unwrap().readings);
+        let line =
+            format!("stage 1 alone: all that follows is of psi <= 60 deg, {readings} readings");
+        assert!(text.contains(&line) && !text.contains("stage 2"), "{text}");
+        let figures = crate::report::figures_of(&rippled(), &report).unwrap();
+        let said = |f: &crate::plot::Figure| f.caption.contains("fitted to psi <= 60 deg alone");
+        assert!(figures.iter().all(said));
+        let page = crate::report::html(&[(&report, &figures)]);
+        assert!(page.contains("stage 1 alone, psi &lt;= 60 deg"));
+    }
+
+    #[test]
+    fn stages_that_cannot_be_are_errors_of_usage() {
+        let none = FitOptions {
+            stage1: None,
+            ..alone()
+        };
+        assert_eq!(fit(&rippled(), &none), Err(FitError::NoStage));
+        let steep = scan_with(|r| r.psi > 1.1);
+        let error = fit(&steep, &alone()).unwrap_err();
+        assert!(error.is_usage() && FitError::NoStage.is_usage());
+        assert!(
+            error.to_string().contains("0 readings up to 60 deg"),
+            "{error}"
+        );
+    }
+
+    /// Written before stage 2 could be left out.
+    #[test]
+    fn the_json_of_two_stages_is_what_it_was() {
+        let fit = fit(&rippled(), &options()).unwrap();
+        let json = serde_json::to_value(&fit).unwrap();
+        assert_eq!(json["options"]["stage2"], "levenberg-marquardt");
+        assert!(json["stage2"]["iterations"].is_u64());
+        let alone = serde_json::to_value(super::fit(&rippled(), &alone()).unwrap()).unwrap();
+        assert!(alone["stage2"].is_null() && alone["options"]["stage2"].is_null());
+        let back: Fit = serde_json::from_value(alone).unwrap();
+        assert_eq!((back.stage2, back.options.stage2), (None, None));
     }
 }

@@ -183,7 +183,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// All warnings about a fit of the measurements with its uncertainty, the gravest first.
+/// All warnings about a fit of these measurements with its uncertainty, the gravest first.
 ///
 /// The widths of a search for a scan that is turned round are told.
 pub(crate) fn warnings(
@@ -288,7 +288,7 @@ fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
 }
 
 fn iteration_limits(fit: &Fit) -> impl Iterator<Item = Warning> {
-    let stages = [fit.stage1, Some(fit.stage2)];
+    let stages = [fit.stage1, fit.stage2];
     (1..).zip(stages).filter_map(|(stage, result)| {
         (result?.ending == Ending::IterationLimit).then_some(Warning::IterationLimit { stage })
     })

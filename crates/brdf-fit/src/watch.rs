@@ -241,7 +241,7 @@ mod tests {
 
     fn without_times(mut fit: Fit) -> Fit {
         fit.seconds = 0.0;
-        let stages = [fit.stage1.as_mut(), Some(&mut fit.stage2)];
+        let stages = [fit.stage1.as_mut(), fit.stage2.as_mut()];
         stages.into_iter().flatten().for_each(|s| s.seconds = 0.0);
         fit.global_check.iter_mut().for_each(|c| c.seconds = 0.0);
         fit
@@ -254,7 +254,7 @@ mod tests {
                 Recorder::default(),
                 FitOptions {
                     stage1: Some(method),
-                    stage2: method,
+                    stage2: Some(method),
                     ..options()
                 },
             );
@@ -272,7 +272,7 @@ mod tests {
             };
             let first = fit.stage1.unwrap();
             check(Phase::Stage1, &first, fit.initial_e_percent.own);
-            check(Phase::Stage2, &fit.stage2, first.e_percent.all);
+            check(Phase::Stage2, &fit.stage2.unwrap(), first.e_percent.all);
         }
     }
 

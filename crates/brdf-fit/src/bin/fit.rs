@@ -57,12 +57,12 @@ struct Arguments {
     #[arg(long, value_name = "PAIRS")]
     hold: Option<Held>,
 
-    /// Method of stage 1
-    #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_and("none"))]
+    /// Method of stage 1, or none to leave it out
+    #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_or_none())]
     stage1: String,
 
-    /// Method of stage 2
-    #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_and(""))]
+    /// Method of stage 2, or none to fit the readings of stage 1 alone
+    #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_or_none())]
     stage2: String,
 
     /// Largest incidence angle of stage 1, in degrees
@@ -185,9 +185,8 @@ impl From<FileSide> for Side {
     }
 }
 
-fn methods_and(other: &'static str) -> PossibleValuesParser {
-    let names = ["levenberg-marquardt", "lm", "nelder-mead", "nm", other];
-    PossibleValuesParser::new(names.into_iter().filter(|name| !name.is_empty()))
+fn methods_or_none() -> PossibleValuesParser {
+    PossibleValuesParser::new(["levenberg-marquardt", "lm", "nelder-mead", "nm", "none"])
 }
 
 fn parse_limit(text: &str) -> Result<f64, String> {
@@ -220,7 +219,7 @@ impl Arguments {
             },
             stage1: method(&self.stage1),
             stage1_limit: self.stage1_limit.to_radians(),
-            stage2: method(&self.stage2).unwrap_or(Method::LevenbergMarquardt),
+            stage2: method(&self.stage2),
             max_iterations: self.max_iterations,
             robust: self.robust,
             energy_limit: self.energy_conserving.map(f64::to_radians),

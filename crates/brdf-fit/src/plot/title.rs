@@ -31,7 +31,7 @@ impl Title {
                 parameters(fit),
                 short(fit.e_percent)
             ),
-            theory: format!("model {model}, {}{}", model.description(), held(fit)),
+            theory: format!("model {model}, {}{}", model.description(), particulars(fit)),
         }
     }
 }
@@ -72,14 +72,13 @@ fn parameters(fit: &Fit) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-/// What is held, in the words of a caption.
-fn held(fit: &Fit) -> String {
+/// What is held and what was fitted, in the words of a caption.
+fn particulars(fit: &Fit) -> String {
     let held = &fit.options.held;
-    if held.is_empty() {
-        String::new()
-    } else {
-        format!(", {held} held")
-    }
+    let held = (!held.is_empty()).then(|| format!(", {held} held"));
+    let scope = fit.options.scope();
+    let scope = scope.map(|scope| format!(", fitted to {scope} alone"));
+    held.into_iter().chain(scope).collect()
 }
 
 fn shown_fixed(model: Model, parameter: Parameter) -> bool {

@@ -73,6 +73,9 @@ fn section(report: &Report, figures: &[Figure]) -> String {
             shortest(fit.n),
             fit.e_percent
         );
+        if let Some(scope) = fit.options.scope() {
+            let _ = write!(text, "; stage 1 alone, {}", escaped(&scope));
+        }
         if !fit.options.held.is_empty() {
             let _ = write!(text, "; held: {}", fit.options.held);
         }
@@ -152,7 +155,7 @@ fn stages(fit: &Fit) -> String {
         fit.initial_e_percent.all,
         String::new(),
     )];
-    let done = [("stage 1", fit.stage1), ("stage 2", Some(fit.stage2))];
+    let done = [("stage 1", fit.stage1), ("stage 2", fit.stage2)];
     for (name, stage) in done
         .into_iter()
         .filter_map(|(name, stage)| Some((name, stage?)))

@@ -178,7 +178,8 @@ impl Report {
         let fit = self.fit.insert(fitted.fit.clone());
         let progress = Progress::begin(watch, Phase::Uncertainty)?;
         let uncertainty = Uncertainty::of_fit(&fitted, &progress)?;
-        self.warnings = warnings(measurements, fit, &uncertainty, &progress)?;
+        let fitted_readings = options.fitted_readings(measurements);
+        self.warnings = warnings(&fitted_readings, fit, &uncertainty, &progress)?;
         // Where everything is held there is nothing to be uncertain of.
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
         if depth > Depth::Fit {
@@ -189,7 +190,7 @@ impl Report {
     }
 
     /// One word on how the fit ended: `ok`; `global`, where the global check took a lower minimum;
-    /// `iteration-limit`; or `failed: ` and why.
+    /// `iteration-limit`; each with ` (stage 1 alone)` where it is; or `failed: ` and why.
     pub fn status(&self) -> String {
         let Some(fit) = &self.fit else {
             return format!("failed: {}", self.error.as_deref().unwrap_or("no fit"));
@@ -198,11 +199,16 @@ impl Report {
             .global_check
             .as_ref()
             .is_some_and(|check| check.lower_minimum_taken);
-        match fit.stage2.ending {
+        let word = match fit.last_stage().map(|stage| stage.ending) {
             _ if taken => "global",
-            Ending::IterationLimit => "iteration-limit",
+            Some(Ending::IterationLimit) => "iteration-limit",
             _ => "ok",
-        }
-        .to_owned()
+        };
+        let alone = if fit.stage2.is_none() {
+            " (stage 1 alone)"
+        } else {
+            ""
+        };
+        format!("{word}{alone}")
     }
 }

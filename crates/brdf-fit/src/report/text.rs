@@ -10,7 +10,7 @@ use crate::criterion::MOST_FOLDS;
 use crate::measurement::Measurement;
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::robust::REJECTED;
-use crate::stages::{Fit, OwnAndAll, Stage};
+use crate::stages::{Fit, Stage};
 use crate::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
 use crate::words::{counted, digits, in_degrees, shortest};
 
@@ -84,14 +84,14 @@ fn stage_table(fit: &Fit) -> String {
         "\n  {:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{:>10}{:>7}{:>7}{:>9}  ended by\n",
         "", "k2", "kD", "k1", "E own %", "E all %", "readings", "iter.", "eval.", "time us"
     );
-    let mut line = |name: &str, p: &Parameters, e: OwnAndAll, rest: &str| {
+    let mut line = |name: &str, p: &Parameters, own: f64, all: &str, rest: &str| {
         let row = format!(
             "  {name:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{rest}",
             digits(p.k2),
             digits(p.kd),
             digits(p.k1),
-            digits(e.own),
-            digits(e.all)
+            digits(own),
+            all
         );
         let _ = writeln!(text, "{}", row.trim_end());
     };
@@ -110,32 +110,31 @@ fn stage_table(fit: &Fit) -> String {
     line(
         "initial",
         &fit.initial.parameters,
-        fit.initial_e_percent,
+        fit.initial_e_percent.own,
+        &digits(fit.initial_e_percent.all),
         "",
     );
-    if let Some(stage) = &fit.stage1 {
-        line(
-            "stage 1",
-            &stage.parameters.parameters(),
-            stage.e_percent,
-            &work(stage),
-        );
+    for (name, stage) in [("stage 1", &fit.stage1), ("stage 2", &fit.stage2)] {
+        let Some(stage) = stage else { continue };
+        let (at, e) = (stage.parameters.parameters(), stage.e_percent);
+        line(name, &at, e.own, &digits(e.all), &work(stage));
     }
-    line(
-        "stage 2",
-        &fit.stage2.parameters.parameters(),
-        fit.stage2.e_percent,
-        &work(&fit.stage2),
-    );
-    if fit.at() != fit.stage2.parameters {
-        let both = OwnAndAll {
-            own: fit.e_percent,
-            all: fit.e_percent,
-        };
-        line("result", &fit.parameters, both, "");
+    let scope = fit.options.scope();
+    if fit.last_stage().map(|stage| stage.parameters) != Some(fit.at()) {
+        // Of other readings than the fitted ones it is not told.
+        let all = scope
+            .as_ref()
+            .map_or_else(|| digits(fit.e_percent), |_| "-".to_owned());
+        line("result", &fit.parameters, fit.e_percent, &all, "");
     }
     if let Some(reason) = &fit.stage1_left_out {
         let _ = writeln!(text, "  stage 1 left out: {reason}");
+    } else if let Some(scope) = scope {
+        let _ = writeln!(
+            text,
+            "  stage 1 alone: all that follows is of {scope}, {}",
+            counted(fit.readings, "reading")
+        );
     } else if fit.stage1.is_some() {
         let limit = in_degrees(fit.options.stage1_limit);
         let _ = writeln!(text, "  stage 1: psi <= {limit} deg");

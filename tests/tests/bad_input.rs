@@ -223,6 +223,52 @@ fn usage_that_is_none() {
 }
 
 #[test]
+fn documents_that_cannot_be_fitted_again() {
+    let scan = in_workspace("data/measured/z307_on_aluminium.csv");
+    let scan = scan.to_str().unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fit.json");
+    let again = |more: &[&str]| {
+        let output = run_fit([&[scan, "--again", json.to_str().unwrap()], more].concat());
+        assert_eq!(output.status.code(), Some(BAD));
+        assert!(!stderr(&output).contains("panicked"));
+        stderr(&output)
+    };
+    assert!(again(&[]).contains("fit.json: cannot be read: No such file"));
+    for (text, message) in [
+        (
+            "psi_deg,theta_deg\n1,2\n",
+            "fit.json, line 1, column 1: expected",
+        ),
+        ("{\"format_version\": 1", "fit.json, line 1, column 20: EOF"),
+        ("{\"reports\": []}", "missing field `format_version`"),
+        (
+            "{\"format_version\": 2}",
+            "format_version 2: expected one from 1 to 1",
+        ),
+        (
+            "{\"format_version\": 1, \"reports\": []}",
+            "fit.json: holds no fit",
+        ),
+    ] {
+        fs::write(&json, text).unwrap();
+        let error = again(&[]);
+        assert!(error.contains(message), "no \"{message}\" in: {error}");
+    }
+    let other = in_workspace("data/synthetic/table1_001_0.44um.csv");
+    let written = run_fit([other.to_str().unwrap(), "--json", json.to_str().unwrap()]);
+    assert_eq!(written.status.code(), Some(0));
+    let error = again(&[]);
+    assert!(
+        error.contains("0.85223 um: no fit of this wavelength in"),
+        "{error}"
+    );
+    assert!(again(&["--n", "1.5"]).contains("cannot be used with"));
+    assert!(again(&["--stage1", "none"]).contains("cannot be used with"));
+    assert!(again(&["--json", json.to_str().unwrap()]).contains("is an input"));
+}
+
+#[test]
 fn one_bad_file_does_not_keep_the_others() {
     let (_folder, bad) = file(rows("ten,0,0.1"));
     let (_other, short) = file(format!("{HEADER}10,0,0.1\n"));

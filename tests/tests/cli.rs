@@ -2,12 +2,14 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::path::Path;
 use std::process::{Output, Stdio};
 
 use brdf_core::{Geometry, ThreeParameterBrdf};
 use brdf_fit::report::{CURVE_COLUMNS, Document, PARAMETER_COLUMNS};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
 use brdf_tests::{fit_command, in_workspace, run_fit};
+use serde_json::Value;
 
 fn measured(file: &str) -> String {
     in_workspace("data/measured")
@@ -153,6 +155,58 @@ fn the_json_reads_back_and_the_curves_agree_with_the_model() {
         2,
         "nothing temporary is left"
     );
+}
+
+/// A document without what differs from run to run.
+fn without_times(json: &Path) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(fields) => {
+                fields.remove("seconds");
+                fields.values_mut().for_each(strip);
+            }
+            Value::Array(values) => values.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    let mut document = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
+    strip(&mut document);
+    document
+}
+
+#[test]
+fn a_fit_again_gives_the_same_numbers_to_the_last_digit() {
+    let folder = tempfile::tempdir().unwrap();
+    let [first, second] = ["first.json", "second.json"].map(|name| folder.path().join(name));
+    let files = ["titanium_anodise.csv", "z307_on_aluminium.csv"].map(measured);
+    let run = |options: &[&str], json: &Path| {
+        let mut command = fit_command();
+        let command = command.args(&files).args(options).arg("--json").arg(json);
+        succeeded(&command.output().unwrap());
+    };
+    let odd = "--model power+n --hold p=0.5 --stage1 nm --stage1-limit 41.4 --weights solid-angle \
+               --g1 0=1,70=0.3 --max-iterations 500";
+    run(&odd.split_whitespace().collect::<Vec<_>>(), &first);
+    run(&["--again", first.to_str().unwrap()], &second);
+    assert_eq!(without_times(&first), without_times(&second));
+    let options = &without_times(&second)["reports"][0]["fit"]["options"];
+    assert_eq!(options["held"], serde_json::json!({ "p": 0.5 }));
+}
+
+#[test]
+fn the_curves_of_every_model_are_of_their_own_scan() {
+    let folder = tempfile::tempdir().unwrap();
+    let curves = folder.path().join("curves.csv");
+    let files = ["titanium_anodise.csv", "z307_on_aluminium.csv"].map(measured);
+    let mut command = fit_command();
+    command
+        .args(files)
+        .args(["--n", "1.5", "--params-only", "--compare"]);
+    succeeded(&command.arg("--curves").arg(&curves).output().unwrap());
+    let mut reader = csv::Reader::from_path(&curves).unwrap();
+    let records = reader.records().map(Result::unwrap);
+    let anodised = records.filter(|record| record[0].ends_with("titanium_anodise.csv"));
+    assert_eq!(anodised.count(), 8 * (108 + 104));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use brdf_core::brdf::check_refractive_index;
 use serde::{Deserialize, Serialize};
 
 /// Largest relative distance between a wavelength and the listed one whose index it takes.
-const WAVELENGTH_TOLERANCE: f64 = 0.01;
+pub(crate) const WAVELENGTH_TOLERANCE: f64 = 0.01;
 
 /// The refractive index n, relative to air.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

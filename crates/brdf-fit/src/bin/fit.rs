@@ -9,8 +9,8 @@ use brdf_fit::model::{Held, Model};
 use brdf_fit::output::{resolved, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{
-    Depth, Document, ModelChoice, PAGE, Report, write_curves, write_folder, write_models,
-    write_parameters,
+    Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
+    write_models, write_parameters,
 };
 use brdf_fit::robust::Loss;
 use brdf_fit::weights::{AngleWeight, Weights};
@@ -35,6 +35,12 @@ struct Arguments {
     /// Scans, as text separated by commas, semicolons or tabs
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+
+    /// Fit with the options of the fits in this file, which an earlier run wrote with --json: those
+    /// of the same wavelength within 1 %, of several those of the same file. The sides on which a
+    /// file counts theta and phi are said anew
+    #[arg(long, value_name = "FILE", conflicts_with_all = OF_A_FIT)]
+    again: Option<PathBuf>,
 
     /// The model: lambert, specular, three (the paper's), three+n, smith+n, power+n, ggx, ggx+n,
     /// beckmann, beckmann+n; or auto, the smallest of the first six that predicts incidences it was
@@ -140,6 +146,24 @@ enum ReadingWeights {
     SolidAngle,
 }
 
+/// The options that say how to fit, which a document says as well.
+const OF_A_FIT: [&str; 14] = [
+    "model",
+    "n",
+    "hold",
+    "stage1",
+    "stage2",
+    "stage1_limit",
+    "max_iterations",
+    "weights",
+    "mask_source",
+    "mask_mirror",
+    "robust",
+    "energy_conserving",
+    "g1",
+    "g2",
+];
+
 /// What `--model` says.
 #[derive(Clone, Copy, PartialEq)]
 enum ModelArgument {
@@ -238,10 +262,14 @@ impl Arguments {
         }
     }
 
-    /// The models of each scan: with `--params-only --compare` there is a line for each.
-    fn models(&self) -> Vec<FitOptions> {
-        let options = self.options();
-        if !(self.params_only && self.compare) {
+    /// Whether there is a line for each of the compared models: with `--params-only --compare`.
+    fn fits_every_model(&self) -> bool {
+        self.params_only && self.compare
+    }
+
+    /// The options of a scan, for each of its models.
+    fn models(&self, options: FitOptions) -> Vec<FitOptions> {
+        if !self.fits_every_model() {
             return vec![options];
         }
         let of = |&model: &Model| options.of_model(model);
@@ -249,16 +277,17 @@ impl Arguments {
     }
 
     fn choice(&self) -> ModelChoice {
-        if self.model == Some(ModelArgument::Auto) && !(self.params_only && self.compare) {
+        if self.model == Some(ModelArgument::Auto) && !self.fits_every_model() {
             ModelChoice::Auto
         } else {
             ModelChoice::Given
         }
     }
 
-    /// No output takes the place of a scan or of another output.
+    /// No output takes the place of an input or of another output.
     fn check_outputs(&self) -> Result<(), String> {
-        let mut taken: Vec<PathBuf> = self.files.iter().map(|file| resolved(file)).collect();
+        let inputs = self.files.iter().chain(&self.again);
+        let mut taken: Vec<PathBuf> = inputs.map(|file| resolved(file)).collect();
         let page = self.plot.as_ref().map(|folder| folder.join(PAGE));
         for output in [&self.json, &self.curves, &page].into_iter().flatten() {
             let target = resolved(output);
@@ -272,6 +301,11 @@ impl Arguments {
             taken.push(target);
         }
         Ok(())
+    }
+
+    /// What `--again` names.
+    fn document(&self) -> Result<Option<Document>, DocumentError> {
+        self.again.as_ref().map(Document::read).transpose()
     }
 
     fn convention(&self) -> Convention {
@@ -306,8 +340,17 @@ fn main() -> ExitCode {
         complain(&message);
         return Outcome::BadUsageOrFile.into();
     }
-    let (scans, mut outcome) = read_all(&arguments);
-    let results = fit_all(&scans, &arguments);
+    let document = match arguments.document() {
+        Ok(document) => document,
+        Err(error) => {
+            complain(&error.to_string());
+            return Outcome::BadUsageOrFile.into();
+        }
+    };
+    let (scans, read) = read_all(&arguments);
+    let (jobs, planned) = plan(&scans, &arguments, document.as_ref());
+    let mut outcome = read.max(planned);
+    let results = fit_all(&jobs, &arguments);
     for (report, error) in &results {
         let Some(error) = error else { continue };
         let status = if error.is_usage() {
@@ -316,17 +359,16 @@ fn main() -> ExitCode {
             Outcome::SomeFailed
         };
         outcome = outcome.max(status);
-        let wavelength = report
-            .wavelength_um
-            .map_or_else(String::new, |w| format!(", {w} um"));
-        let model = match arguments.models().len() {
-            1 => String::new(),
-            _ => format!(", {}", report.model),
+        let model = if arguments.fits_every_model() {
+            format!(", {}", report.model)
+        } else {
+            String::new()
         };
-        complain(&format!("{}{wavelength}{model}: {error}", report.file));
+        let scan = named(&report.file, report.wavelength_um);
+        complain(&format!("{scan}{model}: {error}"));
     }
     let reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
-    if let Err(messages) = deliver(&arguments, &scans, reports) {
+    if let Err(messages) = deliver(&arguments, &jobs, reports) {
         for message in messages {
             complain(&message);
         }
@@ -357,21 +399,53 @@ fn read_all(arguments: &Arguments) -> (Vec<Measurements>, Outcome) {
     (scans, outcome)
 }
 
-/// Fits all scans side by side, in the order of the files, wavelengths and models.
-fn fit_all(scans: &[Measurements], arguments: &Arguments) -> Vec<(Report, Option<FitError>)> {
-    let models = arguments.models();
+/// A scan of one wavelength, and how it is fitted.
+type Job<'a> = (&'a Measurements, FitOptions);
+
+/// The fits of all scans, in the order of the files, wavelengths and models; complains about scans
+/// of which the document says nothing.
+fn plan<'a>(
+    scans: &'a [Measurements],
+    arguments: &Arguments,
+    document: Option<&Document>,
+) -> (Vec<Job<'a>>, Outcome) {
+    let mut jobs = Vec::new();
+    let mut outcome = Outcome::AllFitted;
+    for scan in scans {
+        let options = match document {
+            None => Some(arguments.options()),
+            Some(document) => document.options_for(scan).cloned(),
+        };
+        if let Some(options) = options {
+            let models = arguments.models(options);
+            jobs.extend(models.into_iter().map(|options| (scan, options)));
+        } else {
+            let scan = named(&scan.source, scan.wavelengths().first().copied().flatten());
+            complain(&format!(
+                "{scan}: no fit of this wavelength in the file of --again"
+            ));
+            outcome = Outcome::BadUsageOrFile;
+        }
+    }
+    (jobs, outcome)
+}
+
+/// A file and its wavelength, in the words of a message.
+fn named(file: &str, wavelength_um: Option<f64>) -> String {
+    let wavelength = wavelength_um.map_or_else(String::new, |w| format!(", {w} um"));
+    format!("{file}{wavelength}")
+}
+
+/// Makes all fits side by side.
+fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<(Report, Option<FitError>)> {
     let (choice, depth) = (arguments.choice(), arguments.depth());
-    let jobs: Vec<(&Measurements, &FitOptions)> = scans
-        .iter()
-        .flat_map(|scan| models.iter().map(move |options| (scan, options)))
-        .collect();
     // Drawn on standard error, and there only if that is a terminal.
     let bar = ProgressBar::new(jobs.len() as u64);
     if let Ok(style) = ProgressStyle::with_template("fitting {bar:40} {pos}/{len}") {
         bar.set_style(style);
     }
     let results = jobs
-        .into_par_iter()
+        .par_iter()
         .map(|(scan, options)| {
             let result = Report::of_choice(scan, options, choice, depth);
             bar.inc(1);
@@ -385,17 +459,13 @@ fn fit_all(scans: &[Measurements], arguments: &Arguments) -> Vec<(Report, Option
 /// Writes the files and prints; what fails keeps nothing else from being delivered.
 fn deliver(
     arguments: &Arguments,
-    scans: &[Measurements],
+    jobs: &[Job<'_>],
     reports: Vec<Report>,
 ) -> Result<(), Vec<String>> {
-    let models = arguments.models().len();
-    let scans: Vec<&Measurements> = scans
-        .iter()
-        .flat_map(|scan| std::iter::repeat_n(scan, models))
-        .collect();
+    let scans = jobs.iter().map(|(scan, _)| *scan);
     let mut failed = Vec::new();
     if let Some(folder) = &arguments.plot {
-        let reports: Vec<(&Measurements, &Report)> = scans.iter().copied().zip(&reports).collect();
+        let reports: Vec<(&Measurements, &Report)> = scans.clone().zip(&reports).collect();
         failed.extend(
             write_folder(&reports, folder)
                 .err()
@@ -403,12 +473,8 @@ fn deliver(
         );
     }
     if let Some(path) = &arguments.curves {
-        let models = arguments.models().len();
-        let scans = scans
-            .iter()
-            .flat_map(|scan| std::iter::repeat_n(scan, models));
         let fits = scans.zip(&reports);
-        let fits = fits.filter_map(|(&scan, report)| Some((scan, report.fit.as_ref()?)));
+        let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
         let written = write_file(path, |writer| write_curves(fits, writer));
         failed.extend(written.err().map(|error| error.to_string()));
     }

@@ -2,6 +2,7 @@
 //! curves as CSV.
 
 mod csv;
+mod document;
 mod folder;
 mod html;
 mod text;
@@ -10,6 +11,7 @@ pub use csv::{
     CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, write_curves, write_models, write_parameters,
 };
 
+pub use document::{Document, DocumentError};
 pub use folder::{FolderError, PAGE, figures_of, write_folder};
 pub use html::html;
 
@@ -19,7 +21,7 @@ use crate::assessment::{Assessment, assess_watched, sufficient_model};
 use crate::measurement::{Measurement, Measurements, Metadata};
 use crate::model::Model;
 use crate::solver::Ending;
-use crate::stages::{FORMAT_VERSION, Fit, FitError, FitOptions, fit_scan};
+use crate::stages::{Fit, FitError, FitOptions, fit_scan};
 use crate::uncertainty::Uncertainty;
 use crate::warning::{Warning, warnings};
 use crate::watch::{Phase, Progress, Unwatched, Watch};
@@ -76,25 +78,6 @@ pub enum ModelChoice {
     /// The smallest of the ladder that predicts well enough: see
     /// [`Verdict`](crate::assessment::Verdict).
     Auto,
-}
-
-/// The JSON document of a run.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct Document {
-    /// [`FORMAT_VERSION`] of the program that wrote it.
-    pub format_version: u32,
-    /// One report for each file and wavelength.
-    pub reports: Vec<Report>,
-}
-
-impl Document {
-    /// A document of this version.
-    pub fn new(reports: Vec<Report>) -> Self {
-        Self {
-            format_version: FORMAT_VERSION,
-            reports,
-        }
-    }
 }
 
 impl Report {

@@ -117,6 +117,14 @@ impl Estimate {
         }
     }
 
+    /// The standard error; `None` where there is none.
+    pub fn standard_error(&self) -> Option<f64> {
+        match self.knowledge {
+            Knowledge::Determined { standard_error, .. } => Some(standard_error),
+            _ => None,
+        }
+    }
+
     /// Whether the data determine it.
     pub fn is_determined(&self) -> bool {
         !matches!(self.knowledge, Knowledge::NotDetermined { .. })

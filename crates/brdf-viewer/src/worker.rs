@@ -12,7 +12,7 @@ use std::thread;
 use brdf_core::{AnyBrdf, Geometry};
 use brdf_fit::output::write_file;
 use brdf_fit::plot::{self, View, figure_of};
-use brdf_fit::report::{Depth, Document, ModelChoice, Report, write_curves};
+use brdf_fit::report::{Depth, Document, ModelChoice, Report, write_theory};
 use brdf_fit::watch::{Step, Watch};
 use brdf_fit::{FitOptions, Measurements};
 
@@ -382,9 +382,9 @@ fn theory_in_words(knobs: &Knobs) -> String {
 }
 
 fn curves(measurements: &Measurements, knobs: &Knobs) -> Result<Vec<u8>, String> {
+    let brdf = AnyBrdf::new(knobs.model.family(), &knobs.at).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();
-    let source = plot::CurveSource::of(measurements, knobs.model.family(), knobs.at);
-    write_curves([source], &mut bytes).map_err(|error| error.to_string())?;
+    write_theory(measurements, &brdf, &mut bytes).map_err(|error| error.to_string())?;
     Ok(bytes)
 }
 

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use brdf_core::{AnyBrdf, Geometry, ModelParameters, Parameters};
+use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 
 use super::Report;
 use crate::measurement::Measurements;
@@ -107,6 +107,18 @@ pub const CURVE_COLUMNS: [&str; 10] = [
     "fit_per_sr",
 ];
 
+/// The header of the curves of one BRDF.
+pub const THEORY_COLUMNS: [&str; 8] = [
+    "file",
+    "wavelength_um",
+    "psi_deg",
+    "theta_deg",
+    "phi_deg",
+    "measured_per_sr",
+    "sigma_per_sr",
+    "theory_per_sr",
+];
+
 /// Writes theory and experiment side by side, incidence by incidence: f_r as measured, of the
 /// initial values, of stage 1 and of the fit, at every reading, in the model's convention.
 pub fn write_curves<'a>(
@@ -118,6 +130,19 @@ pub fn write_curves<'a>(
     for (measurements, fit) in fits {
         write_curves_of(measurements, fit, &mut csv)?;
     }
+    csv.flush()
+}
+
+/// Writes theory and experiment side by side for one BRDF, incidence by incidence: f_r as measured
+/// and of the theory at every reading, in the model's convention.
+pub fn write_theory(
+    measurements: &Measurements,
+    brdf: &AnyBrdf,
+    writer: impl io::Write,
+) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(THEORY_COLUMNS)?;
+    write_readings(measurements, &[Some(*brdf)], &mut csv)?;
     csv.flush()
 }
 
@@ -138,10 +163,19 @@ fn write_curves_of(
         .map(|stage| model(stage.parameters))
         .transpose()?;
     let last = model(fit.at())?;
+    write_readings(measurements, &[Some(initial), stage1, Some(last)], csv)
+}
+
+/// The readings incidence by incidence, each with the values of some BRDFs.
+fn write_readings(
+    measurements: &Measurements,
+    theories: &[Option<AnyBrdf>],
+    csv: &mut csv::Writer<impl io::Write>,
+) -> io::Result<()> {
     let degrees = |angle: f64| in_degrees(angle).to_string();
+    let readings = measurements.readings();
     for incidence in measurements.incidences() {
         let mut order = incidence.readings;
-        let readings = measurements.readings();
         let key = |i: usize| (readings[i].phi, readings[i].theta);
         order.sort_by(|&a, &b| {
             key(a)
@@ -152,21 +186,20 @@ fn write_curves_of(
             let geometry = reading
                 .geometry()
                 .map_err(|error| io::Error::other(error.to_string()))?;
-            let theory = |brdf: &AnyBrdf, at: &Geometry| brdf.value(at).to_string();
-            csv.write_record([
+            let mut record = vec![
                 measurements.source.clone(),
-                number(fit.wavelength_um),
+                number(reading.wavelength_um),
                 degrees(reading.psi),
                 degrees(reading.theta),
                 degrees(reading.phi),
                 reading.brdf.to_string(),
                 number(reading.sigma),
-                theory(&initial, &geometry),
-                stage1
-                    .as_ref()
-                    .map_or_else(String::new, |brdf| theory(brdf, &geometry)),
-                theory(&last, &geometry),
-            ])?;
+            ];
+            let values = theories
+                .iter()
+                .map(|brdf| brdf.map(|brdf| brdf.value(&geometry)));
+            record.extend(values.map(number));
+            csv.write_record(record)?;
         }
     }
     Ok(())

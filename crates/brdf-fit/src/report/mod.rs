@@ -8,7 +8,8 @@ mod html;
 mod text;
 
 pub use csv::{
-    CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, write_curves, write_models, write_parameters,
+    CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, THEORY_COLUMNS, write_curves, write_models,
+    write_parameters, write_theory,
 };
 
 pub use document::{Document, DocumentError};

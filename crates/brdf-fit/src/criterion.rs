@@ -7,10 +7,12 @@ use brdf_core::fresnel::Dielectric;
 use brdf_core::shadowing::{Shadowing, Smith, VGroove};
 use brdf_core::{Family, GeometryError, ModelParameters};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurements;
 use crate::model::Parameter;
 use crate::weights::Weights;
+use crate::words::in_degrees;
 
 /// Sizes of the largest weighted reading for which all squares and their products stay well within
 /// the range of numbers; far beyond any BRDF.
@@ -71,6 +73,28 @@ struct Angles {
 pub(crate) struct Segment {
     pub(crate) psi: f64,
     pub(crate) rows: Range<usize>,
+}
+
+/// E of one incidence by itself: numerator and denominator of eq. (5) over its readings only.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct IncidenceError {
+    /// Incidence angle in degrees.
+    pub psi_deg: f64,
+    /// How many readings there are.
+    pub readings: usize,
+    /// E in percent; `None` where all its readings are zero, or weigh nothing.
+    pub e_percent: Option<f64>,
+}
+
+impl IncidenceError {
+    /// E of the readings of a segment, in percent.
+    pub(crate) fn new(segment: &Segment, e_percent: Option<f64>) -> Self {
+        Self {
+            psi_deg: in_degrees(segment.psi),
+            readings: segment.rows.len(),
+            e_percent,
+        }
+    }
 }
 
 /// E and what a step of Gauss and Newton needs: half the gradient of E, J^T r, and half its
@@ -294,6 +318,23 @@ impl Criterion {
             error += dot(&r, &r);
         });
         error
+    }
+
+    /// E of each incidence by itself, in ascending order.
+    pub fn by_incidence(&self, at: &ModelParameters) -> Vec<IncidenceError> {
+        let squares = |segment: &Segment| {
+            let (above, below) = self.squares_of(at, segment);
+            IncidenceError::new(segment, (below > 0.0).then(|| 100.0 * above / below))
+        };
+        self.segments.iter().map(squares).collect()
+    }
+
+    /// Numerator and denominator of E over one incidence.
+    pub(crate) fn squares_of(&self, at: &ModelParameters, segment: &Segment) -> (f64, f64) {
+        let residuals = self.residuals_of(at, segment.rows.clone());
+        residuals.iter().fold((0.0, 0.0), |(above, below), (r, y)| {
+            (above + r * r, below + y * y)
+        })
     }
 
     /// The terms under the sum of E before they are squared: model - measured and measured, for
@@ -707,6 +748,21 @@ mod tests {
             }
         }
         assert!((some.error(&at) / (above / below) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_incidences_add_up_to_e() {
+        let at = three(Parameters::new(0.2, 0.15, 0.3).unwrap());
+        let criterion = criterion(&Weights::default());
+        let incidences = criterion.by_incidence(&at);
+        assert_eq!(incidences.len(), criterion.segments().len());
+        assert!(incidences.is_sorted_by(|a, b| a.psi_deg < b.psi_deg));
+        let mut error = 0.0;
+        for (incidence, segment) in incidences.iter().zip(criterion.segments()) {
+            let (_, readings) = criterion.squares_of(&at, segment);
+            error += 0.01 * incidence.e_percent.unwrap() * readings;
+        }
+        assert!((error / criterion.error(&at) - 1.0).abs() < 1e-12);
     }
 
     #[test]

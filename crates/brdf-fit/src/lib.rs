@@ -49,7 +49,7 @@ pub mod uncertainty;
 pub mod warning;
 pub mod watch;
 pub mod weights;
-mod words;
+pub mod words;
 
 pub use measurement::{Measurement, Measurements};
 pub use refractive_index::RefractiveIndex;

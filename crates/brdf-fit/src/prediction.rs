@@ -6,12 +6,11 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::criterion::{Criterion, Segment};
+use crate::criterion::{Criterion, IncidenceError};
 use crate::model::{HeldModel, Parameter};
 use crate::profile::Search;
-use crate::stages::{IncidenceError, polish};
+use crate::stages::polish;
 use crate::watch::{Cancelled, Progress, unless_cancelled};
-use crate::words::in_degrees;
 
 /// Resamples of the bootstrap: the ends of its 95 % interval are the 6th and the 195th.
 pub const RESAMPLES: usize = 200;
@@ -58,17 +57,14 @@ pub(crate) fn leave_one_out(
         .collect::<Result<_, _>>()?;
     let incidences = segments.iter().enumerate().map(|(i, segment)| {
         let others = fits[i % folds].as_ref();
-        let sums = others.map(|others| squares(criterion, segment, others));
+        let sums = others.map(|others| criterion.squares_of(others, segment));
         if let Some((errors, readings)) = sums {
             above += errors;
             below += readings;
         }
-        IncidenceError {
-            psi_deg: in_degrees(segment.psi),
-            readings: segment.rows.len(),
-            e_percent: sums
-                .and_then(|(errors, readings)| (readings > 0.0).then(|| 100.0 * errors / readings)),
-        }
+        let percent = |(errors, readings): (f64, f64)| 100.0 * errors / readings;
+        let sums = sums.filter(|(_, readings)| *readings > 0.0);
+        IncidenceError::new(segment, sums.map(percent))
     });
     let incidences = incidences.collect();
     Ok((below > 0.0).then(|| Prediction {
@@ -107,14 +103,6 @@ fn fit_of_others(
     let best =
         |a: &ModelParameters, b: &ModelParameters| others.error(a).total_cmp(&others.error(b));
     Ok(ends.into_iter().min_by(best))
-}
-
-/// The squared errors and the squared readings of an incidence.
-fn squares(criterion: &Criterion, segment: &Segment, at: &ModelParameters) -> (f64, f64) {
-    let residuals = criterion.residuals_of(at, segment.rows.clone());
-    residuals.iter().fold((0.0, 0.0), |(above, below), (r, y)| {
-        (above + r * r, below + y * y)
-    })
 }
 
 /// The spread of a parameter over the resamples.

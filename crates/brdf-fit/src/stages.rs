@@ -6,7 +6,7 @@ use std::time::Instant;
 use brdf_core::{ModelParameters, Parameters};
 use serde::{Deserialize, Serialize};
 
-use crate::criterion::{Criterion, CriterionError, Segment};
+use crate::criterion::{Criterion, CriterionError};
 use crate::energy::{EnergyConstraint, conserve};
 use crate::initial::{InitialValues, initial_values};
 use crate::measurement::{Incidence, Measurement, Measurements, up_to};
@@ -18,6 +18,8 @@ use crate::solver::{Ending, Method, minimise};
 use crate::watch::{Cancelled, Phase, Progress, Unwatched, Watch};
 use crate::weights::Weights;
 use crate::words::{as_degrees, as_optional_degrees, counted, in_degrees, shortest};
+
+pub use crate::criterion::IncidenceError;
 
 /// Version of the JSON that [`Fit`] is written as.
 pub const FORMAT_VERSION: u32 = 1;
@@ -203,17 +205,6 @@ pub struct Stage {
     pub seconds: f64,
     /// Why it stopped.
     pub ending: Ending,
-}
-
-/// E of one incidence by itself: numerator and denominator of eq. (5) over its readings only.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct IncidenceError {
-    /// Incidence angle in degrees.
-    pub psi_deg: f64,
-    /// How many readings there are.
-    pub readings: usize,
-    /// E in percent; `None` where all its readings are zero, or weigh nothing.
-    pub e_percent: Option<f64>,
 }
 
 /// What the profile search over k1 found.
@@ -473,7 +464,7 @@ pub(crate) fn fit_scan(
         weightless,
         parameters: parameters.parameters(),
         e_percent: 100.0 * fitted.error(&parameters),
-        incidences: errors_by_incidence(fitted, &parameters),
+        incidences: fitted.by_incidence(&parameters),
         initial_e_percent: own_and_all(own, &all, &start),
         initial,
         stage1,
@@ -765,23 +756,6 @@ fn check_globally(
         report: Some(report),
         search: Some(search),
     })
-}
-
-pub(crate) fn errors_by_incidence(all: &Criterion, at: &ModelParameters) -> Vec<IncidenceError> {
-    let residuals = all.residuals(at);
-    let error = |segment: &Segment| {
-        let (mut above, mut below) = (0.0, 0.0);
-        for (r, y) in &residuals[segment.rows.clone()] {
-            above += r * r;
-            below += y * y;
-        }
-        IncidenceError {
-            psi_deg: in_degrees(segment.psi),
-            readings: segment.rows.len(),
-            e_percent: (below > 0.0).then(|| 100.0 * above / below),
-        }
-    };
-    all.segments().iter().map(error).collect()
 }
 
 #[cfg(test)]

@@ -1,20 +1,29 @@
 //! How counts, numbers and angles are written in messages, tables and files.
+//!
+//! ```
+//! use brdf_fit::words::{counted, digits, in_degrees, shortest};
+//!
+//! assert_eq!(counted(3, "reading"), "3 readings");
+//! assert_eq!(digits(0.022_859_766), "0.0228598");
+//! assert_eq!(shortest(1.5), "1.5");
+//! assert_eq!(in_degrees(41.4_f64.to_radians()), 41.4);
+//! ```
 
 /// `1 reading`, `3 readings`.
-pub(crate) fn counted(count: usize, noun: &str) -> String {
+pub fn counted(count: usize, noun: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{plural}")
 }
 
 /// A number as it was written, or six significant digits where it has more.
-pub(crate) fn shortest(value: f64) -> String {
+pub fn shortest(value: f64) -> String {
     let plain = value.to_string();
     let six = digits(value);
     if plain.len() < six.len() { plain } else { six }
 }
 
 /// Six significant digits, in whichever notation is short.
-pub(crate) fn digits(value: f64) -> String {
+pub fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -32,7 +41,7 @@ pub(crate) fn digits(value: f64) -> String {
 }
 
 /// Degrees of an angle in radians, rounded so that what was written in degrees comes back.
-pub(crate) fn in_degrees(radians: f64) -> f64 {
+pub fn in_degrees(radians: f64) -> f64 {
     (radians.to_degrees() * 1e9).round() / 1e9
 }
 

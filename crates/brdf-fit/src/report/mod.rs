@@ -15,6 +15,7 @@ pub use csv::{
 pub use document::{Document, DocumentError};
 pub use folder::{FolderError, PAGE, figures_of, write_folder};
 pub use html::html;
+pub use text::Section;
 
 use serde::{Deserialize, Serialize};
 

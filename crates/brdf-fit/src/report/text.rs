@@ -14,36 +14,68 @@ use crate::stages::{Fit, Stage};
 use crate::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
 use crate::words::{counted, digits, in_degrees, shortest};
 
+/// A part of what a person reads of a fit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Section {
+    /// What it is of.
+    pub title: &'static str,
+    /// Its lines, each ended, as they stand in [`Report::text`]; a blank line may come first.
+    pub text: String,
+}
+
 impl Report {
-    /// The table that a person reads.
+    /// The table that a person reads: a heading and the [sections](Self::sections).
     pub fn text(&self) -> String {
-        let mut text = self.heading();
-        if let Some(fit) = &self.fit {
-            text += &stage_table(fit);
-            text += &incidence_table(fit, self.assessment.as_ref());
-            text += &global_check_line(fit);
-            text += &options_lines(fit, &self.rejected);
-            if let Some(uncertainty) = &self.uncertainty {
-                text += &parameter_table(uncertainty, self.assessment.as_ref());
-            }
-            if let Some(assessment) = &self.assessment {
-                text += &prediction_line(fit, assessment);
-                text += &model_table(assessment);
-                text += &physics_lines(&assessment.physics, fit);
-            }
-        } else {
+        let sections = self.sections().into_iter().map(|section| section.text);
+        std::iter::once(self.heading()).chain(sections).collect()
+    }
+
+    /// The parts of [`text`](Self::text) below its heading, in their order; what there is nothing to
+    /// say of is left out.
+    pub fn sections(&self) -> Vec<Section> {
+        let mut sections = self
+            .fit
+            .as_ref()
+            .map_or_else(Vec::new, |fit| self.of_fit(fit));
+        if self.fit.is_none() {
             let error = self.error.as_deref().unwrap_or("no fit");
-            let _ = writeln!(text, "  error: {error}");
+            sections.push(("error", format!("  error: {error}\n")));
         }
+        sections.push(("warnings", self.warning_lines()));
+        let sections = sections.into_iter();
+        sections
+            .filter(|(_, text)| !text.is_empty())
+            .map(|(title, text)| Section { title, text })
+            .collect()
+    }
+
+    fn of_fit(&self, fit: &Fit) -> Vec<(&'static str, String)> {
+        let assessment = self.assessment.as_ref();
+        let check = global_check_line(fit) + &options_lines(fit, &self.rejected);
+        let mut sections = vec![
+            ("stages", stage_table(fit)),
+            ("incidences", incidence_table(fit, assessment)),
+            ("global check and options", check),
+        ];
+        if let Some(uncertainty) = &self.uncertainty {
+            sections.push(("parameters", parameter_table(uncertainty, assessment)));
+        }
+        if let Some(assessment) = assessment {
+            let models = prediction_line(fit, assessment) + &model_table(assessment);
+            sections.push(("models", models));
+            sections.push(("reflectance", physics_lines(&assessment.physics, fit)));
+        }
+        sections
+    }
+
+    fn warning_lines(&self) -> String {
+        let mut text = String::new();
         for warning in &self.warnings {
             let _ = writeln!(text, "  warning: {warning}");
         }
         if !self.ignored_columns.is_empty() {
-            let _ = writeln!(
-                text,
-                "  columns not used: {}",
-                self.ignored_columns.join(", ")
-            );
+            let columns = self.ignored_columns.join(", ");
+            let _ = writeln!(text, "  columns not used: {columns}");
         }
         text
     }
@@ -483,4 +515,40 @@ fn physics_lines(physics: &Physics, fit: &Fit) -> String {
         );
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::Depth;
+    use crate::synthetic::scan;
+    use crate::{FitOptions, RefractiveIndex};
+
+    #[test]
+    fn the_sections_are_the_text_below_its_heading() {
+        let mut scan = scan(Parameters::new(0.156, 0.584, 1.338).unwrap(), 1.5);
+        scan.ignored_columns = vec!["temperature".to_owned()];
+        let mut options = FitOptions::default();
+        let titles = |report: &Report| -> Vec<&str> {
+            let sections = report.sections();
+            let texts: String = sections.iter().map(|s| s.text.as_str()).collect();
+            assert!(report.text().ends_with(&texts) && report.text().starts_with("synthetic"));
+            sections.iter().map(|section| section.title).collect()
+        };
+        scan.source = "synthetic".to_owned();
+        let (failed, _) = Report::of(&scan, &options, Depth::Fit);
+        assert_eq!(titles(&failed), ["error", "warnings"]);
+        options.refractive_index = Some(RefractiveIndex::Same(1.5));
+        let (report, _) = Report::of(&scan, &options, Depth::Assessed);
+        let all = [
+            "stages",
+            "incidences",
+            "global check and options",
+            "parameters",
+            "models",
+            "reflectance",
+            "warnings",
+        ];
+        assert_eq!(titles(&report), all);
+    }
 }

@@ -530,6 +530,29 @@ fn after_the_stages(
     Ok(after)
 }
 
+/// Where the first stage of a fit starts: the paper's initial values, or the start of the options.
+pub fn starting_values(
+    measurements: &Measurements,
+    options: &FitOptions,
+) -> Result<ModelParameters, FitError> {
+    let wavelength_um = single_wavelength(measurements)?;
+    let n = refractive_index(measurements, options, wavelength_um)?;
+    let all = Criterion::new(measurements, options.model.family(), n, &options.weights)?;
+    let incidences = measurements.incidences();
+    let first = FirstStage::choose(&all, &incidences, options);
+    let own = first.criterion.as_ref().unwrap_or(&all);
+    let progress = Progress::new(&Unwatched, Phase::Stage1);
+    let (_, start) = starting_point(
+        measurements.readings(),
+        first.incidences,
+        n,
+        own,
+        options,
+        &progress,
+    )?;
+    Ok(start)
+}
+
 /// The initial values, and the start of the first stage: they with what the model has besides.
 fn starting_point(
     readings: &[Measurement],

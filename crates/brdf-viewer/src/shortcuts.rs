@@ -158,7 +158,7 @@ impl Command {
 
 /// The commands whose keys were pressed.
 pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
-    let editing = ctx.egui_wants_keyboard_input();
+    let editing = ctx.text_edit_focused();
     // A key with more modifiers comes before the same with fewer.
     let mut all: Vec<(Command, KeyboardShortcut)> = MENUS
         .iter()

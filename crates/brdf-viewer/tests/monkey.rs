@@ -4,6 +4,7 @@
 //! `VIEWER_MONKEY_SECONDS` says for how long (10 where it says nothing), `VIEWER_MONKEY_SEED` with
 //! which events (1).
 
+#[path = "window/common.rs"]
 mod common;
 
 use std::time::{Duration, Instant};

@@ -49,13 +49,11 @@ fn show_run(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
     if !run.is_running() {
         let words = match run.progress {
             Progress::Cancelled => format!("cancelled: {} of {} were done", run.done, run.jobs),
-            _ if run.failed.is_empty() => format!("{} of {} fitted", run.done, run.jobs),
-            _ => format!(
-                "{} of {} fitted, {} failed",
-                run.done,
-                run.jobs,
-                run.failed.len()
-            ),
+            _ if run.failed.is_empty() => format!("{} of {} fitted", run.fitted(), run.jobs),
+            _ => {
+                let failed = run.failed.len();
+                format!("{} of {} fitted, {failed} failed", run.fitted(), run.jobs)
+            }
         };
         ui.label(words);
         return;

@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, state: &mut State) -> bool {
 fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {
     let knobs = sample.scan().knobs;
     let mut model = knobs.model;
-    let combo = ComboBox::from_id_salt("model").width(280.0);
+    let combo = ComboBox::from_id_salt("model").width(280.0).height(400.0);
     let text = |model: Model| format!("{model}: {}", model.description());
     let shown = combo
         .selected_text(text(model))

@@ -215,7 +215,7 @@ mod tests {
         let marks = values(Axis::Logarithmic, 0.02_f64.log10(), 0.03_f64.log10());
         assert!(marks.len() > 4, "{marks:?}");
         let round = |m: &f64| {
-            let value = 10_f64.powf(*m) * 500.0;
+            let value = 10_f64.powf(*m) * 1000.0;
             (value - value.round()).abs() < 1e-9
         };
         assert!(marks.iter().all(round), "{marks:?}");

@@ -169,9 +169,9 @@ pub enum Progress {
 pub struct FitRun {
     /// How many fits there are.
     pub jobs: usize,
-    /// How many are done.
+    /// How many have ended, well or not.
     pub done: usize,
-    /// Why the others failed.
+    /// Why some failed.
     pub failed: Vec<String>,
     /// The scan of the fit that runs, or ran last.
     pub scan: ScanId,
@@ -198,6 +198,11 @@ impl FitRun {
             progress: Progress::Running,
             started: Instant::now(),
         }
+    }
+
+    /// How many fits have succeeded.
+    pub fn fitted(&self) -> usize {
+        self.done - self.failed.len()
     }
 
     /// Whether the worker is still at it.

@@ -692,7 +692,7 @@ impl State {
         } else {
             Progress::Done
         };
-        let (done, jobs) = (run.done, run.jobs);
+        let (done, jobs) = (run.fitted(), run.jobs);
         let seconds = run.started.elapsed().as_secs_f64();
         self.status = if cancelled {
             format!("fit cancelled: {done} of {jobs} were done")

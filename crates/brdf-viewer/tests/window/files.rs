@@ -1,20 +1,18 @@
 //! Opening and writing: the path box, dropped files, dialogs, exports, the recent files, and what is
 //! kept between two starts.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 
+use crate::common::{
+    NoDialogs, Window, click, click_role, drop_file, empty, menu, settle, shows, type_number,
+    window_with, with_z307, z307,
+};
 use brdf_fit::Measurements;
 use brdf_fit::report::Document;
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::Export;
 use brdf_viewer::state::saved::Settings;
 use brdf_viewer::worker::{Event, Events};
-use common::{
-    NoDialogs, Window, click, click_role, drop_file, empty, menu, settle, type_number, window_with,
-    with_z307, z307,
-};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
@@ -111,7 +109,7 @@ fn a_good_file_is_dropped() {
     let mut window = empty();
     drop_file(&mut window, "a.csv", &z307());
     assert_eq!(names(&window), ["a"]);
-    assert!(window.query_by_label_contains("112 readings").is_some());
+    assert!(shows(&window, "112 readings"));
 }
 
 /// Dialogs that answer by themselves.
@@ -264,7 +262,7 @@ fn a_fit_is_written_and_read_back_to_the_last_digit() {
     menu(&mut window, "File", "Close all samples");
     open_path(&mut window, &json);
     assert_eq!(knobs(&window), fitted);
-    assert!(window.query_by_label_contains("verdict").is_some());
+    assert!(shows(&window, "verdict"));
     // The scan may have moved with the fit.
     let moved = tempfile::tempdir().unwrap();
     std::fs::rename(&scan, moved.path().join("paint.csv")).unwrap();

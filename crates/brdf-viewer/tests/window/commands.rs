@@ -1,12 +1,10 @@
 //! Every entry of every menu, by the mouse and by its key.
 
-mod common;
-
+use crate::common::{Window, click, menu, settle, type_number, with_z307};
 use brdf_viewer::intent::{Command, Export, Picture};
 use brdf_viewer::shortcuts::MENUS;
 use brdf_viewer::state::State;
 use brdf_viewer::state::interface::Dialog;
-use common::{Window, click, menu, settle, type_number, with_z307};
 use egui_kittest::kittest::Queryable as _;
 
 /// A window in which every command but redoing and cancelling can be carried out.
@@ -113,21 +111,23 @@ fn no_two_commands_have_the_same_key() {
 #[test]
 fn quit_asks_the_window_to_close() {
     let mut window = ready();
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Q);
-    let mut closed = false;
-    for _ in 0..3 {
-        window.step();
-        let viewports = &window.output().viewport_output;
-        closed |= viewports
-            .values()
-            .any(|v| v.commands.contains(&egui::ViewportCommand::Close));
-    }
+    window.event(egui::Event::Key {
+        key: egui::Key::Q,
+        physical_key: None,
+        pressed: true,
+        repeat: false,
+        modifiers: egui::Modifiers::COMMAND,
+    });
+    window.step();
+    let viewports = &window.output().viewport_output;
+    let mut commands = viewports.values().flat_map(|viewport| &viewport.commands);
+    let closed = commands.any(|command| *command == egui::ViewportCommand::Close);
     assert!(closed);
 }
 
 #[test]
 fn commands_that_cannot_be_carried_out_are_grey() {
-    let mut window = common::empty();
+    let mut window = crate::common::empty();
     for command in [
         Command::Close,
         Command::Undo,
@@ -149,8 +149,8 @@ fn every_built_in_sample_opens() {
         .into_iter()
         .enumerate()
     {
-        let mut window = common::empty();
-        common::open_built_in(&mut window, &entry.name);
+        let mut window = crate::common::empty();
+        crate::common::open_built_in(&mut window, &entry.name);
         let state = &window.state().state;
         assert_eq!(state.samples.len(), 1, "{i}");
         assert_eq!(

@@ -2,11 +2,9 @@
 //!
 //! `UPDATE_SNAPSHOTS=1 cargo test -p brdf-viewer --test snapshots` draws them anew; look at each.
 
-mod common;
-
+use crate::common::{NoDialogs, Window, drop_file, settle, window_with};
 use brdf_viewer::intent::{Command, Intent};
 use brdf_viewer::state::saved::Settings;
-use common::{NoDialogs, Window, drop_file, settle, window_with};
 
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 

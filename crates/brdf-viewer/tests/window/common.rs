@@ -1,7 +1,7 @@
 //! What the tests of the window share: a window that nobody sees, and ways to read back what it
 //! shows.
 
-#![allow(dead_code, reason = "each test uses a part of it")]
+#![allow(dead_code, reason = "the random events use a part of it")]
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use egui_kittest::kittest::Queryable as _;
 use egui_plot::{PlotMemory, PlotPoint};
 
 /// A window of the tests.
-pub type Window = Harness<'static, Viewer>;
+pub(crate) type Window = Harness<'static, Viewer>;
 
 /// The processor draws, not a graphics card.
 #[derive(Default)]
@@ -42,7 +42,7 @@ impl egui_kittest::TestRenderer for OnProcessor {
 }
 
 /// A system without dialogs for files.
-pub struct NoDialogs;
+pub(crate) struct NoDialogs;
 
 impl Dialogs for NoDialogs {
     fn available(&self) -> bool {
@@ -53,11 +53,16 @@ impl Dialogs for NoDialogs {
 }
 
 /// A window with what `dialogs` and `settings` say.
-pub fn window_with(size: [f32; 2], dialogs: impl Dialogs + 'static, settings: Settings) -> Window {
+pub(crate) fn window_with(
+    size: [f32; 2],
+    dialogs: impl Dialogs + 'static,
+    settings: Settings,
+) -> Window {
     let mut window = Harness::builder()
         .with_size(size)
         .with_theme(egui::Theme::Light)
-        .with_max_steps(20)
+        .with_max_steps(60)
+        .with_step_dt(1.0 / 60.0)
         .renderer(OnProcessor::default())
         .build_eframe(|creation| {
             let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(dialogs), settings);
@@ -69,19 +74,19 @@ pub fn window_with(size: [f32; 2], dialogs: impl Dialogs + 'static, settings: Se
 }
 
 /// An empty window of 1280 x 800.
-pub fn empty() -> Window {
+pub(crate) fn empty() -> Window {
     window_with([1280.0, 800.0], NoDialogs, Settings::unkept())
 }
 
 /// A window with the first of the built-in samples: Z307, measured.
-pub fn with_z307() -> Window {
+pub(crate) fn with_z307() -> Window {
     let mut window = empty();
     open_built_in(&mut window, "z307_on_aluminium.csv");
     window
 }
 
 /// Opens an entry of the built-in menu by the mouse.
-pub fn open_built_in(window: &mut Window, name: &str) {
+pub(crate) fn open_built_in(window: &mut Window, name: &str) {
     window.get_by_label("Built-in").click();
     window.run();
     window.get_by_label(name).click();
@@ -89,7 +94,7 @@ pub fn open_built_in(window: &mut Window, name: &str) {
 }
 
 /// Frames until all work is done.
-pub fn settle(window: &mut Window) {
+pub(crate) fn settle(window: &mut Window) {
     let started = Instant::now();
     loop {
         window.step();
@@ -106,32 +111,39 @@ pub fn settle(window: &mut Window) {
 }
 
 /// Clicks on what has this label.
-pub fn click(window: &mut Window, label: &str) {
+pub(crate) fn click(window: &mut Window, label: &str) {
     window.get_by_label(label).click();
     settle(window);
 }
 
 /// Clicks on a control of a kind.
-pub fn click_role(window: &mut Window, role: Role, label: &str) {
+pub(crate) fn click_role(window: &mut Window, role: Role, label: &str) {
     window.get_by_role_and_label(role, label).click();
     settle(window);
 }
 
+/// Whether these words are to be read somewhere.
+pub(crate) fn shows(window: &Window, words: &str) -> bool {
+    window.query_all_by_label_contains(words).next().is_some()
+}
+
 /// Chooses an entry of a menu.
-pub fn menu(window: &mut Window, title: &str, entry: &str) {
+pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
     window.get_by_role_and_label(Role::Button, title).click();
     window.run();
-    let found = window.get_by(|node| {
-        node.label()
-            .is_some_and(|label| label == entry || label.starts_with(&format!("{entry} ")))
-            && node.role() == Role::Button
+    // The key stands behind the name. A button of the same name may stand elsewhere, too.
+    let starts = format!("{entry} ");
+    let entries = window.get_all_by(|node| {
+        let label = node.label().unwrap_or_default();
+        node.role() == Role::Button && (label == entry || label.starts_with(&starts))
     });
+    let found = entries.last().unwrap();
     found.click();
     settle(window);
 }
 
 /// Types into the number box of a parameter.
-pub fn type_number(window: &mut Window, label: &str, text: &str) {
+pub(crate) fn type_number(window: &mut Window, label: &str, text: &str) {
     window
         .get_by_role_and_label(Role::SpinButton, label)
         .click();
@@ -157,14 +169,14 @@ impl egui::DroppedFile for InMemory {
 }
 
 /// Drops a file onto the window.
-pub fn drop_file(window: &mut Window, name: &str, text: &str) {
+pub(crate) fn drop_file(window: &mut Window, name: &str, text: &str) {
     let file = InMemory(PathBuf::from(name), text.as_bytes().to_vec());
     window.input_mut().dropped_files.push(Arc::new(file));
     settle(window);
 }
 
 /// The painted lines of a colour, on the screen.
-pub fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
+pub(crate) fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
     fn collect(shape: &Shape, colour: Color32, lines: &mut Vec<Vec<Pos2>>) {
         match shape {
             Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, colour, lines)),
@@ -182,7 +194,7 @@ pub fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
 }
 
 /// The longest painted line of a colour in the coordinates of a plot.
-pub fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec<PlotPoint> {
+pub(crate) fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec<PlotPoint> {
     let id = brdf_viewer::plot::id(&window.state().state, plot);
     let memory = PlotMemory::load(&window.ctx, id).expect("no such plot");
     let transform = memory.transform();
@@ -195,7 +207,7 @@ pub fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec<PlotPo
 }
 
 /// How many marks of a colour are painted: filled circles and polygons.
-pub fn painted_marks(window: &Window, colour: Color32) -> usize {
+pub(crate) fn painted_marks(window: &Window, colour: Color32) -> usize {
     fn count(shape: &Shape, colour: Color32) -> usize {
         match shape {
             Shape::Vec(shapes) => shapes.iter().map(|s| count(s, colour)).sum(),
@@ -210,7 +222,7 @@ pub fn painted_marks(window: &Window, colour: Color32) -> usize {
 }
 
 /// The colour of an incidence of the only sample.
-pub fn colour_of(window: &Window, i: usize) -> Color32 {
+pub(crate) fn colour_of(window: &Window, i: usize) -> Color32 {
     let state = &window.state().state;
     let sample = state.active_sample().unwrap();
     let shown = sample.scan().shown_psi().len();
@@ -219,7 +231,7 @@ pub fn colour_of(window: &Window, i: usize) -> Color32 {
 }
 
 /// The Z307 sample of the project as text.
-pub fn z307() -> String {
+pub(crate) fn z307() -> String {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/measured/z307_on_aluminium.csv");
     std::fs::read_to_string(path).unwrap()

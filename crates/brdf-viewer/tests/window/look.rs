@@ -1,13 +1,11 @@
 //! How the data are looked at: what is shown, axes, layouts, zoom, hover.
 
-mod common;
-
+use crate::common::{
+    Window, click, click_role, colour_of, drop_file, empty, menu, open_built_in, painted_curve,
+    painted_lines, painted_marks, settle, shows, with_z307,
+};
 use brdf_fit::plot::{Layout, Quantity, Scale};
 use brdf_fit::read::Side;
-use common::{
-    Window, click, click_role, colour_of, drop_file, empty, menu, open_built_in, painted_curve,
-    painted_lines, painted_marks, settle, with_z307,
-};
 use egui::accesskit::{Role, Toggled};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_plot::PlotMemory;
@@ -72,7 +70,7 @@ fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
     );
     assert_eq!(painted_marks(&window, colour), marks - 1);
     let words = "1 reading <= 0 cannot be shown on a logarithmic axis";
-    assert!(window.query_by_label_contains(words).is_some());
+    assert!(shows(&window, words));
     let scan = window.state().state.active_sample().unwrap().scan();
     let brdf = scan.knobs.brdf().unwrap();
     let pixel = plot(&window, "theory").transform().dvalue_dpos()[1].abs();
@@ -87,11 +85,7 @@ fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
 fn another_plane_than_that_of_incidence() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
-    assert!(
-        window
-            .query_by_label_contains("4 readings out of this plane")
-            .is_some()
-    );
+    assert!(shows(&window, "4 readings out of this plane"));
     click_role(&mut window, Role::ComboBox, "plane of view");
     click(&mut window, "phi = 90° / 270°");
     let state = &window.state().state;
@@ -102,16 +96,13 @@ fn another_plane_than_that_of_incidence() {
         .iter()
         .map(|r| r.theta_deg)
         .collect();
-    assert_eq!(shown.len(), 3);
+    // The normal is in every plane.
+    assert_eq!(shown.len(), 4);
     assert!(
-        (shown[0] + 40.0).abs() < 1e-9 && (shown[2] - 40.0).abs() < 1e-9,
+        (shown[0] + 40.0).abs() < 1e-9 && (shown[3] - 40.0).abs() < 1e-9,
         "{shown:?}"
     );
-    assert!(
-        window
-            .query_by_label_contains("6 readings out of this plane")
-            .is_some()
-    );
+    assert!(shows(&window, "4 readings out of this plane"));
 }
 
 #[test]
@@ -265,7 +256,7 @@ fn the_pointer_reads_out_what_it_is_at() {
         format!("theory {}", digits(reading.theory)),
         format!("difference {}", digits(reading.residual())),
     ] {
-        assert!(window.query_by_label_contains(&words).is_some(), "{words}");
+        assert!(shows(&window, &words), "{words}");
     }
 }
 
@@ -313,5 +304,5 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
             .is_some()
     );
     click(&mut window, "Tables");
-    assert!(window.query_by_label_contains("verdict").is_some());
+    assert!(shows(&window, "verdict"));
 }

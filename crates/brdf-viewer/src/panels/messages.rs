@@ -17,6 +17,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     Panel::top("messages").resizable(false).show(ui, |ui| {
         ScrollArea::vertical()
             .max_height(MOST_HEIGHT)
+            .min_scrolled_height(MOST_HEIGHT)
             .show(ui, |ui| {
                 for (i, message) in state.messages.iter().enumerate().rev() {
                     if show_message(ui, message) {

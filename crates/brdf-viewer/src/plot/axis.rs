@@ -174,14 +174,9 @@ pub fn degrees(input: GridInput) -> Vec<GridMark> {
     }
     let mut marks = marks_every(input.bounds.0, input.bounds.1, 5.0);
     for mark in &mut marks {
-        let is = |step: f64| mark.value.rem_euclid(step) == 0.0;
-        mark.step_size = if is(30.0) {
-            30.0
-        } else if is(15.0) {
-            15.0
-        } else {
-            5.0
-        };
+        let is = |step: &f64| mark.value.rem_euclid(*step) == 0.0;
+        let step = [90.0, 30.0, 15.0].into_iter().find(is);
+        mark.step_size = step.unwrap_or(5.0);
     }
     marks
 }

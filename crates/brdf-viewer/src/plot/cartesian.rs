@@ -18,6 +18,9 @@ const RESIDUALS: f32 = 0.3;
 /// The axes are at least so wide that plots above each other line up, in points.
 const AXIS_WIDTH: f32 = 62.0;
 
+/// Room above a panel, in points.
+const ABOVE_PANEL: f32 = 7.0;
+
 /// Numbers at the axis of view angles are at least so far apart, in points.
 const LEAST_APART: f64 = 34.0;
 
@@ -100,6 +103,9 @@ pub fn panels(ui: &mut Ui, plots: &Plots) {
 fn show_panel(ui: &mut Ui, plots: &Plots, panel: &[&Drawn], place: usize, size: Vec2) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
+        // The uppermost number at the axis stands half above it.
+        ui.add_space(ABOVE_PANEL);
+        let size = vec2(size.x, size.y - ABOVE_PANEL);
         // Panels with residuals share the view angle only: the two kinds have other heights.
         let group = Some((Id::unique("panels"), [true, !plots.state.view.residuals]));
         let names = [format!("theory {place}"), format!("residuals {place}")];
@@ -231,7 +237,7 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
     let at = |reading: &Reading| Some([reading.theta_deg, axis.place(reading.value)?]);
     read_out(&response, drawn, at);
     if plots.state.view.layout == Layout::Panels {
-        name_panel(ui, &response, drawn);
+        name_panel(ui, &state.view, &response, drawn);
     }
     describe(&response, "BRDF plot", drawn);
 }
@@ -283,21 +289,24 @@ pub(super) fn reset_on_demand<'a>(ui: &Ui, state: &State, name: &str, plot: Plot
     plot.reset()
 }
 
-/// The incidence of a panel, in its corner.
-fn name_panel(ui: &Ui, response: &PlotResponse<()>, drawn: &[&Drawn]) {
+/// The incidence of a panel, in the upper corner that is away from the mirror direction.
+fn name_panel(ui: &Ui, view: &View, response: &PlotResponse<()>, drawn: &[&Drawn]) {
     let Some(first) = drawn.first() else {
         return;
     };
-    let corner = response.transform.frame().left_top() + vec2(5.0, 3.0);
+    let frame = response.transform.frame();
+    let mirror_at_left = view
+        .mirror_deg(first.curve.psi)
+        .is_some_and(|mirror| mirror < 0.0);
+    let (corner, align) = if mirror_at_left {
+        (frame.right_top() + vec2(-5.0, 3.0), Align2::RIGHT_TOP)
+    } else {
+        (frame.left_top() + vec2(5.0, 3.0), Align2::LEFT_TOP)
+    };
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().strong_text_color();
-    ui.painter().text(
-        corner,
-        Align2::LEFT_TOP,
-        title(first.curve.psi),
-        font,
-        colour,
-    );
+    ui.painter()
+        .text(corner, align, title(first.curve.psi), font, colour);
 }
 
 /// Says in words what the plot shows, for those who do not see it.

@@ -14,8 +14,11 @@ use crate::state::sample::{Sample, Scan};
 
 /// Draws the results.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
-    let most = (ui.available_height() * 0.6).max(120.0);
-    let panel = Panel::bottom("results").resizable(true).default_size(190.0);
+    let height = ui.available_height();
+    let most = (height * 0.6).max(120.0);
+    let panel = Panel::bottom("results")
+        .resizable(true)
+        .default_size((0.25 * height).clamp(110.0, 240.0));
     panel.size_range(90.0..=most).show(ui, |ui| {
         // The height is the user's, not that of the words in it.
         ui.take_available_height();

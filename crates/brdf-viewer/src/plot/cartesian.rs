@@ -155,6 +155,7 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
         .label_spacing(Rangef::new(8.0, 12.0));
     let mut y = AxisHints::new_y()
         .formatter(move |mark, range| axis.label(mark, range))
+        .label_spacing(Rangef::new(11.0, 15.0))
         .min_thickness(if narrow { 36.0 } else { AXIS_WIDTH });
     if !narrow {
         y = y.label(value);

@@ -1,9 +1,11 @@
 //! The two stages of the fit, and the check against the global optimum.
 
 use std::borrow::Cow;
+use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 
-use brdf_core::{ModelParameters, Parameters};
+use brdf_core::brdf::check_refractive_index;
+use brdf_core::{ModelParameters, ParameterError, Parameters};
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, CriterionError};
@@ -236,6 +238,12 @@ pub enum FitError {
         at_wavelength(*.0)
     )]
     NoRefractiveIndex(Option<f64>),
+    /// The refractive index is outside of the model's domain.
+    #[error(transparent)]
+    RefractiveIndex(#[from] ParameterError),
+    /// The limit of rho(psi) <= 1 is no incidence.
+    #[error("rho(psi) <= 1 up to {0} deg: expected a limit from 0 to below 90 deg")]
+    EnergyLimit(f64),
     /// No more readings than free parameters.
     #[error(
         "{}: {} need at least {}", counted(*.count, "reading"),
@@ -322,6 +330,8 @@ impl FitError {
         matches!(
             self,
             Self::NoRefractiveIndex(_)
+                | Self::RefractiveIndex(_)
+                | Self::EnergyLimit(_)
                 | Self::Criterion(CriterionError::NoSigma)
                 | Self::NoStage
                 | Self::Stage1Alone(_)
@@ -413,6 +423,12 @@ pub(crate) fn fit_scan(
     let started = Instant::now();
     if options.stage1.or(options.stage2).is_none() {
         return Err(FitError::NoStage);
+    }
+    if let Some(limit) = options
+        .energy_limit
+        .filter(|l| !(0.0..FRAC_PI_2).contains(l))
+    {
+        return Err(FitError::EnergyLimit(in_degrees(limit)));
     }
     let readings = measurements.readings();
     let wavelength_um = single_wavelength(measurements)?;
@@ -607,9 +623,10 @@ fn refractive_index(
     // It is where n starts, or nothing depends on it.
     let needed = !options.model.frees(Parameter::N) && options.model.frees(Parameter::K2);
     let usual = (!needed).then_some(USUAL_N);
-    stated
+    let n = stated
         .or(usual)
-        .ok_or(FitError::NoRefractiveIndex(wavelength_um))
+        .ok_or(FitError::NoRefractiveIndex(wavelength_um))?;
+    Ok(check_refractive_index(n)?)
 }
 
 fn too_few(count: usize, model: HeldModel) -> FitError {
@@ -1012,6 +1029,27 @@ mod tests {
             error.to_string().contains("0 readings up to 60 deg"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn options_from_elsewhere_are_checked() {
+        let with = |n: f64, limit_deg: f64| FitOptions {
+            refractive_index: Some(RefractiveIndex::Same(n)),
+            energy_limit: Some(limit_deg.to_radians()),
+            ..options()
+        };
+        for (options, message) in [
+            (with(0.5, 80.0), "refractive index n = 0.5"),
+            (with(f64::NAN, 80.0), "refractive index n = NaN"),
+            (with(1.5, 95.0), "up to 95 deg"),
+            (with(1.5, -5.0), "up to -5 deg"),
+        ] {
+            let error = fit(&rippled(), &options).unwrap_err();
+            assert!(
+                error.is_usage() && error.to_string().contains(message),
+                "{error}"
+            );
+        }
     }
 
     /// Written before stage 2 could be left out.

@@ -34,8 +34,8 @@ pub enum DocumentError {
     },
     /// It is no JSON, or JSON of something else.
     #[error(
-        "{}, line {}, column {}: {error}: expected {}",
-        path.display(), error.line(), error.column(), expected(.error)
+        "{}, line {}, column {}: {}: expected {}",
+        path.display(), error.line(), error.column(), plain(.error), expected(.error)
     )]
     Json {
         /// The file.
@@ -61,6 +61,13 @@ pub enum DocumentError {
         /// The file.
         path: PathBuf,
     },
+}
+
+/// What is wrong, without the place that the message has already.
+fn plain(error: &serde_json::Error) -> String {
+    let text = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    text.strip_suffix(&place).unwrap_or(&text).to_owned()
 }
 
 fn expected(error: &serde_json::Error) -> &'static str {

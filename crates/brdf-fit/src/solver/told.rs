@@ -17,14 +17,14 @@ pub(crate) struct Told<S, F> {
 }
 
 impl<S, F> Told<S, F> {
-    fn told<X: Clone>(&self, state: State<X>) -> Result<State<X>, Error>
+    fn tell<X: Clone>(&self, state: &State<X>) -> Result<(), Error>
     where
         F: Fn(&X, f64) -> Result<(), Cancelled>,
     {
         if let Some(here) = state.get_param() {
             (self.tell)(here, state.get_cost())?;
         }
-        Ok(state)
+        Ok(())
     }
 }
 
@@ -43,8 +43,11 @@ where
         problem: &mut Problem<O>,
         state: State<X>,
     ) -> Result<(State<X>, Option<KV>), Error> {
-        let (state, log) = self.solver.init(problem, state)?;
-        Ok((self.told(state)?, log))
+        let begun = self.solver.init(problem, state);
+        if let Ok((state, _)) = &begun {
+            self.tell(state)?;
+        }
+        begun
     }
 
     fn next_iter(
@@ -52,8 +55,12 @@ where
         problem: &mut Problem<O>,
         state: State<X>,
     ) -> Result<(State<X>, Option<KV>), Error> {
-        let (state, log) = self.solver.next_iter(problem, state)?;
-        Ok((self.told(state)?, log))
+        // The state is large: it is looked at where it is.
+        let next = self.solver.next_iter(problem, state);
+        if let Ok((state, _)) = &next {
+            self.tell(state)?;
+        }
+        next
     }
 
     fn terminate(&mut self, state: &State<X>) -> TerminationStatus {

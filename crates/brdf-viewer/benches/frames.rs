@@ -58,7 +58,7 @@ fn frames(criterion: &mut Criterion) {
         group.bench_function(format!("{name}, nothing changes"), |bench| {
             bench.iter(|| black_box(window.frame_and_triangles(&mut viewer)));
         });
-        let mut turn = |viewer: &mut Viewer| {
+        let turn = |viewer: &mut Viewer| {
             let mut knobs = viewer.state.active_sample().expect("a sample").scan().knobs;
             knobs.at.k1 = if knobs.at.k1 > 0.3 {
                 0.2

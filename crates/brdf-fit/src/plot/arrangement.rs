@@ -18,6 +18,9 @@ const RESIDUALS: f64 = 0.28;
 /// Between two planes: room for the numbers at their axes.
 const GAP: (f64, f64) = (46.0, 40.0);
 
+/// Room for the titles of the uppermost panels.
+const TITLES: f64 = 16.0;
+
 /// What a figure shows of one sample.
 pub struct Layer<'a> {
     /// Its name.
@@ -67,6 +70,9 @@ pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
             for panel in panels(&curves) {
                 panel.draw(canvas, &curves, &axis)?;
             }
+            if view.layout == Layout::Panels {
+                name_axes(canvas, view)?;
+            }
             theory::legend(&curves, note.as_deref()).draw(canvas)
         })?
     };
@@ -103,8 +109,8 @@ fn title(layers: &[Layer]) -> Title {
     }
 }
 
-/// A text that is not longer than a line.
-fn shortened(text: &str, longest: usize) -> String {
+/// A text that is not longer than so many letters.
+pub(super) fn shortened(text: &str, longest: usize) -> String {
     if text.chars().count() <= longest {
         return text.to_owned();
     }
@@ -118,8 +124,7 @@ struct Panel<'a> {
     curves: Vec<&'a Styled>,
     /// The incidence, where every panel has one of its own.
     name: Option<String>,
-    /// Whether the names of the axes stand here: of view angles, and of the values.
-    names: (bool, bool),
+    /// One of many: without the names of the axes, which stand once for all.
     small: bool,
 }
 
@@ -131,7 +136,6 @@ fn panels(curves: &Curves) -> Vec<Panel<'_>> {
             area: WHOLE,
             curves: all,
             name: None,
-            names: (true, true),
             small: false,
         }];
     }
@@ -148,11 +152,24 @@ fn panels(curves: &Curves) -> Vec<Panel<'_>> {
             area: part(i % columns, columns, i / columns, rows),
             name: group.first().map(|styled| styled.curve.name()),
             curves: group,
-            // A panel with none below it has the name of the view angle.
-            names: (i + columns >= count, i % columns == 0),
-            small: columns > 1,
+            small: true,
         })
         .collect()
+}
+
+/// The names of the axes, once for all panels.
+fn name_axes(canvas: &mut Canvas, view: &View) -> Result<(), PlotError> {
+    let middle = |from: f64, to: f64| 0.5 * (from + to);
+    let below = (middle(WHOLE.left, WHOLE.right), WHOLE.bottom + 42.0);
+    canvas.text(&view.theta_name(), below, TEXT + 1.0, Stands::Centred)?;
+    let beside = (WHOLE.left - 66.0, middle(WHOLE.top, WHOLE.bottom));
+    let residuals = if view.residuals {
+        "; below: measured - theory"
+    } else {
+        ""
+    };
+    let name = format!("{}{residuals}", view.quantity.axis_name());
+    canvas.text(&name, beside, TEXT + 1.0, Stands::Upwards)
 }
 
 /// So many columns that panels are somewhat wider than high.
@@ -174,7 +191,7 @@ fn part(column: usize, columns: usize, row: usize, rows: usize) -> Area {
         (start, start + size)
     };
     let (left, right) = along(WHOLE.left, WHOLE.right, GAP.0, column, columns);
-    let (top, bottom) = along(WHOLE.top, WHOLE.bottom, GAP.1, row, rows);
+    let (top, bottom) = along(WHOLE.top + TITLES, WHOLE.bottom, GAP.1, row, rows);
     Area {
         left,
         right,
@@ -191,20 +208,24 @@ impl Panel<'_> {
             x: self.theta_axis(),
             y: y.clone(),
             area: Area {
-                bottom: below.map_or(self.area.bottom, |below| below.top - 22.0),
+                bottom: below.map_or(self.area.bottom, |below| below.top - 28.0),
                 ..self.area
             },
         };
-        let theta_name = view.theta_name();
-        let theta_name = if self.names.0 {
-            theta_name.as_str()
-        } else {
-            ""
+        let named = |name: &str| {
+            if self.small {
+                String::new()
+            } else {
+                name.to_owned()
+            }
         };
-        let value_name = |name: &'static str| if self.names.1 { name } else { "" };
-        let quantity = value_name(view.quantity.axis_name());
-        let above_name = if below.is_some() { "" } else { theta_name };
-        frame.draw(canvas, above_name, quantity)?;
+        let theta_name = named(&view.theta_name());
+        let above_name = if below.is_some() {
+            ""
+        } else {
+            theta_name.as_str()
+        };
+        frame.draw(canvas, above_name, &named(view.quantity.axis_name()))?;
         theory::draw_curves(canvas, &frame, &self.curves, view)?;
         if let Some(name) = &self.name {
             let place = (frame.area.left + 5.0, frame.area.top - 9.0);
@@ -218,12 +239,7 @@ impl Panel<'_> {
             y: residuals::axis(curves),
             area,
         };
-        let name = if self.small {
-            "residual"
-        } else {
-            residuals::RESIDUAL
-        };
-        frame.draw(canvas, theta_name, value_name(name))?;
+        frame.draw(canvas, &theta_name, &named(residuals::RESIDUAL))?;
         residuals::draw_residuals(canvas, &frame, &self.curves, view)
     }
 

@@ -164,6 +164,11 @@ impl Axis {
         (self.low..=self.high).contains(&value)
     }
 
+    /// Whether it goes in decades.
+    pub(super) fn is_logarithmic(&self) -> bool {
+        self.logarithmic
+    }
+
     /// The low end.
     pub(super) fn low(&self) -> f64 {
         self.low

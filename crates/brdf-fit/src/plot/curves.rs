@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use brdf_core::{AnyBrdf, Geometry};
 
 use super::Sigma;
+use super::arrangement::shortened;
 use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
 use super::selection::Selection;
 use super::view::{Scale, View};
@@ -316,7 +317,7 @@ impl Curves {
         for (i, curve) in all.into_iter().enumerate() {
             let name = match source.name {
                 None => curve.name(),
-                Some(sample) => format!("{sample}, {}", curve.name()),
+                Some(sample) => format!("{}, {}", curve.name(), shortened(sample, 18)),
             };
             self.curves.push(Styled {
                 curve,

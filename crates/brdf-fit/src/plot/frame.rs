@@ -95,6 +95,9 @@ impl Frame {
         }
         for tick in &self.y.ticks {
             self.level(canvas, tick.value, &GRID)?;
+            if !self.has_room(tick.value) {
+                continue;
+            }
             let place = (
                 self.area.left - 8.0,
                 self.at(0.0, self.y.height(tick.value)).1,
@@ -119,6 +122,23 @@ impl Frame {
             TEXT + 1.0,
             Stands::Upwards,
         )
+    }
+
+    /// Whether there is room for a number at this value of y: in a low plane every second or fifth
+    /// line of the grid has one.
+    fn has_room(&self, value: f64) -> bool {
+        let [first, second, ..] = self.y.ticks.as_slice() else {
+            return true;
+        };
+        if self.y.is_logarithmic() {
+            return true;
+        }
+        let step = second.value - first.value;
+        let apart = step / (self.y.high() - self.y.low()) * (self.area.bottom - self.area.top);
+        let every = [1.0, 2.0, 5.0]
+            .into_iter()
+            .find(|k| k * apart >= LEAST_APART);
+        (value / step).round().rem_euclid(every.unwrap_or(10.0)) == 0.0
     }
 
     /// A thin line all over the plane at a value of x.
@@ -219,6 +239,9 @@ pub(super) fn draw_title(canvas: &mut Canvas, title: &Title) -> Result<(), PlotE
     canvas.text(&title.sample, (20.0, 22.0), TITLE, Stands::Right)?;
     canvas.text(&title.details, (20.0, 45.0), TEXT, Stands::Right)
 }
+
+/// Numbers at the axis of values are at least so far apart.
+const LEAST_APART: f64 = 15.0;
 
 /// Letters of a line of the legend beside its key.
 const A_LINE: usize = 21;

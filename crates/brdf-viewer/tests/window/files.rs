@@ -7,7 +7,6 @@ use crate::common::{
     NoDialogs, Window, click, click_role, drop_file, empty, menu, settle, shows, type_number,
     window_with, with_z307, z307,
 };
-use brdf_fit::Measurements;
 use brdf_fit::report::Document;
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::Export;

@@ -48,17 +48,24 @@ pub fn run_fit<S: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = S>
 /// The program `fit`, to be started.
 pub fn fit_command() -> Command {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    let program = PROGRAM.get_or_init(|| {
-        let build = escargot::CargoBuild::new()
-            .manifest_path(in_workspace("Cargo.toml"))
-            .package("brdf-fit")
-            .bin("fit")
-            .current_release()
-            .current_target()
-            .run();
-        build.expect("the program builds").path().to_owned()
-    });
-    Command::new(program)
+    Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "fit")))
+}
+
+/// The program `viewer`, to be started.
+pub fn viewer_command() -> Command {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    Command::new(PROGRAM.get_or_init(|| built("brdf-viewer", "viewer")))
+}
+
+fn built(package: &str, program: &str) -> PathBuf {
+    let build = escargot::CargoBuild::new()
+        .manifest_path(in_workspace("Cargo.toml"))
+        .package(package)
+        .bin(program)
+        .current_release()
+        .current_target()
+        .run();
+    build.expect("the program builds").path().to_owned()
 }
 
 /// A generator of random numbers that gives the same ones in every run.

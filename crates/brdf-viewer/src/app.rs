@@ -91,7 +91,7 @@ impl Viewer {
         if self.state.interface.parameters {
             let turned = panels::parameters::show(ui, &mut self.state);
             // The results are drawn already, for the parameters before: they are drawn once more.
-            if turned && self.state.interface.results {
+            if turned && self.state.interface.results && self.state.interface.tab.follows() {
                 ctx.request_discard("parameters were turned");
             }
         }

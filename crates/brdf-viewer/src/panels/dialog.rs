@@ -36,13 +36,13 @@ fn show_path(ui: &mut Ui, path: &str, verb: &str, browse: bool, intents: &mut Ve
     let label = ui.label("Path of the file");
     let edit = TextEdit::singleline(&mut text).desired_width(460.0);
     let response = ui.add(edit).labelled_by(label.id);
-    if ui.memory(|memory| memory.focused().is_none()) {
+    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+    if !entered && ui.memory(|memory| memory.focused().is_none()) {
         response.request_focus();
     }
     if text != path {
         intents.push(Intent::Path(text.clone()));
     }
-    let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
     ui.horizontal(|ui| {
         let some = !text.trim().is_empty();
         let pressed = ui.add_enabled(some, egui::Button::new(verb)).clicked();

@@ -4,6 +4,9 @@
 use brdf_fit::plot::Scale;
 use egui_plot::{GridInput, GridMark};
 
+/// The height of a number, in the smallest steps of a grid.
+const A_NUMBER: f64 = 2.6;
+
 /// How a value is placed on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Axis {
@@ -66,17 +69,22 @@ impl Axis {
     }
 }
 
+/// Lines at round values with room for a number at each, and finer ones between them.
 fn linear(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
-    let fine = round_number_above(input.base_step_size);
-    let mut marks = marks_every(low, high, fine);
+    let numbered = round_number_above(A_NUMBER * input.base_step_size);
+    let leading = numbered / 10_f64.powf(numbered.log10().floor());
+    let parts = if (1.5..4.0).contains(&leading) {
+        4.0
+    } else {
+        5.0
+    };
+    let mut marks = marks_every(low, high, numbered / parts);
     for mark in &mut marks {
-        let steps = (mark.value / fine).round();
-        mark.step_size = if steps.rem_euclid(5.0) == 0.0 {
-            5.0 * fine
-        } else {
-            fine
-        };
+        let steps = (mark.value / mark.step_size).round();
+        if steps.rem_euclid(parts) == 0.0 {
+            mark.step_size = numbered;
+        }
     }
     marks
 }

@@ -122,7 +122,7 @@ fn by_incidence<'a>(drawn: &'a [Drawn<'a>]) -> Vec<Vec<&'a Drawn<'a>>> {
 }
 
 /// So many columns that the panels are about half again as wide as high.
-fn columns(count: usize, size: Vec2) -> usize {
+pub(super) fn columns(count: usize, size: Vec2) -> usize {
     let columns = (count as f32 * size.x / (1.5 * size.y.max(1.0))).sqrt();
     (columns.round() as usize).clamp(1, count.clamp(1, 6))
 }

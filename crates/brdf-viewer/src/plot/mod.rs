@@ -30,10 +30,7 @@ pub struct Drawn<'a> {
 pub fn show(ui: &mut Ui, state: &mut State, intents: &mut Vec<Intent>) {
     CentralPanel::default().show(ui, |ui| {
         toolbar::show(ui, state, intents);
-        // A column of readings is two points wide; steps keep a drag of a border from thinning anew
-        // in every frame.
-        let columns = (ui.available_width() / 128.0).ceil() as usize * 64;
-        state.columns = columns.clamp(64, 1024);
+        state.columns = columns(state, ui.available_size());
         if state.visible().next().is_none() {
             ui.centered_and_justified(|ui| {
                 ui.label(if state.samples.is_empty() {
@@ -52,6 +49,25 @@ pub fn show(ui: &mut Ui, state: &mut State, intents: &mut Vec<Intent>) {
             Layout::Polar => polar::show(ui, &plot),
         }
     });
+}
+
+/// So many columns of readings the plot can show: one is two points wide. It grows in steps, so
+/// that the drag of a border does not thin anew in every frame.
+fn columns(state: &State, size: egui::Vec2) -> usize {
+    const STEP: f32 = 64.0;
+    let width = match state.view.layout {
+        Layout::Panels => size.x / cartesian::columns(incidences(state), size) as f32,
+        Layout::Together | Layout::Polar => size.x,
+    };
+    ((width / (2.0 * STEP)).ceil() * STEP).clamp(STEP, 1024.0) as usize
+}
+
+/// How many panels there are: one for each incidence of all samples that are shown.
+fn incidences(state: &State) -> usize {
+    let mut psi: Vec<f64> = state.visible().flat_map(|s| s.scan().shown_psi()).collect();
+    psi.sort_by(f64::total_cmp);
+    psi.dedup_by(|b, a| (*b - *a).to_degrees() < 0.05);
+    psi.len()
 }
 
 /// The curves of all samples that are shown.

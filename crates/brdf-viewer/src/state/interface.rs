@@ -39,6 +39,11 @@ impl ResultTab {
         Self::Reflectance,
     ];
 
+    /// Whether it follows the parameters as they are turned; the others are of the last fit.
+    pub fn follows(self) -> bool {
+        matches!(self, Self::Profile | Self::Reflectance)
+    }
+
     /// Its name.
     pub fn name(self) -> &'static str {
         match self {

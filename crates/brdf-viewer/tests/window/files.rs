@@ -388,6 +388,22 @@ fn the_window_is_as_it_was_left() {
 }
 
 #[test]
+fn a_path_is_entered_by_the_keyboard_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("paint.csv");
+    std::fs::write(&path, z307()).unwrap();
+    let mut window = empty();
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::O);
+    settle(&mut window);
+    // The box has the keyboard without a click.
+    window.event(egui::Event::Text(path.display().to_string()));
+    window.run();
+    window.key_press(egui::Key::Enter);
+    settle(&mut window);
+    assert_eq!(names(&window), ["paint"]);
+}
+
+#[test]
 fn without_dialogs_open_asks_for_a_path() {
     let mut window = empty();
     menu(&mut window, "File", "Open...");

@@ -9,7 +9,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 pictures=$(realpath "${1:-docs}")
-sample=$(realpath data/measured/z307_on_aluminium.csv)
+sample=data/measured/z307_on_aluminium.csv
 work=$(mktemp -d)
 mkdir -p "$pictures"
 

@@ -21,6 +21,12 @@
 //! No formula of the model stands here: curves, errors and reflectances come from `brdf_fit` and
 //! `brdf_core`, the figures that are written come from `brdf_fit::plot`.
 
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "numbers of pixels, columns and iterations are small and positive"
+)]
+
 pub mod app;
 pub mod dialogs;
 pub mod intent;

@@ -16,7 +16,7 @@ use crate::raster::Rasteriser;
 const FRAMES: usize = 8;
 
 /// Longer than this no fit of a picture takes.
-const PATIENCE: Duration = Duration::from_secs(600);
+const PATIENCE: Duration = Duration::from_mins(10);
 
 /// A window that nobody sees.
 pub struct Unseen {

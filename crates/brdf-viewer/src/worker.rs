@@ -335,6 +335,9 @@ fn write(path: &Path, writing: &Writing) -> Result<(), String> {
     write_file(path, |writer| writer.write_all(&bytes)).map_err(|error| error.to_string())
 }
 
+/// The standard error of the theory at a geometry.
+type Band<'a> = Box<dyn Fn(&Geometry) -> f64 + 'a>;
+
 fn figure(picture: Picture, layers: &[Layer], view: &View) -> Result<Vec<u8>, String> {
     let mut brdfs: Vec<AnyBrdf> = Vec::new();
     for layer in layers {
@@ -342,13 +345,13 @@ fn figure(picture: Picture, layers: &[Layer], view: &View) -> Result<Vec<u8>, St
         let brdf = AnyBrdf::new(knobs.model.family(), &knobs.at);
         brdfs.push(brdf.map_err(|error| format!("{}: {error}", layer.name))?);
     }
-    let bands: Vec<Option<Box<dyn Fn(&Geometry) -> f64 + '_>>> = layers
+    let bands: Vec<Option<Band>> = layers
         .iter()
         .zip(&brdfs)
         .map(|(layer, brdf)| {
             let uncertainty = layer.fitted.as_ref()?.uncertainty.as_ref()?;
             let band = move |at: &Geometry| uncertainty.band(brdf, at);
-            Some(Box::new(band) as Box<dyn Fn(&Geometry) -> f64>)
+            Some(Box::new(band) as Band)
         })
         .collect();
     let layers: Vec<plot::Layer> = layers

@@ -130,7 +130,7 @@ struct Panel<'a> {
 
 /// All curves in one panel, or a panel for each incidence.
 fn panels(curves: &Curves) -> Vec<Panel<'_>> {
-    let mut all: Vec<&Styled> = curves.curves.iter().collect();
+    let mut all: Vec<&Styled> = curves.all.iter().collect();
     if curves.view.layout != Layout::Panels {
         return vec![Panel {
             area: WHOLE,

@@ -245,7 +245,7 @@ pub(super) struct Styled {
 pub(super) struct Curves {
     pub(super) view: View,
     /// In ascending order of incidence, sample by sample.
-    pub(super) curves: Vec<Styled>,
+    pub(super) all: Vec<Styled>,
     /// Sentences for the captions, each with a blank before it.
     pub(super) left_out: String,
 }
@@ -268,7 +268,7 @@ impl Curves {
     pub(super) fn of(sources: &[Source], view: &View) -> Self {
         let mut all = Self {
             view: *view,
-            curves: Vec::new(),
+            all: Vec::new(),
             left_out: String::new(),
         };
         for source in sources {
@@ -319,7 +319,7 @@ impl Curves {
                 None => curve.name(),
                 Some(sample) => format!("{}, {}", curve.name(), shortened(sample, 18)),
             };
-            self.curves.push(Styled {
+            self.all.push(Styled {
                 curve,
                 name,
                 colour: colour(source.family, i, count, Ground::Light),
@@ -330,7 +330,7 @@ impl Curves {
 
     /// The curves without their looks.
     pub(super) fn plain(&self) -> impl Iterator<Item = &Curve> + Clone {
-        self.curves.iter().map(|styled| &styled.curve)
+        self.all.iter().map(|styled| &styled.curve)
     }
 
     /// All readings that are shown.

@@ -150,7 +150,7 @@ pub fn figures(
     };
     let curves = Curves::of(&[source], &View::default());
     let mut figures = Vec::new();
-    if !curves.curves.is_empty() {
+    if !curves.all.is_empty() {
         figures.push(theory::linear(&title, &curves)?);
         figures.extend(theory::logarithmic(&title, &curves)?);
         figures.push(residuals::figure(&title, &curves)?);

@@ -139,6 +139,11 @@ pub fn mark(family: usize, i: usize) -> MarkShape {
 }
 
 /// The colour at a place of a ramp, from 0 to 1.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "places and colours are small positive numbers"
+)]
 fn between(ramp: &[Colour; 5], place: f64) -> Colour {
     let at = place * 4.0;
     let low = (at.floor() as usize).min(3);
@@ -158,19 +163,19 @@ mod tests {
     /// Machado, Oliveira and Fernandes (2009), severity 1: what is left of linear light.
     const BLINDNESS: [[[f64; 3]; 3]; 3] = [
         [
-            [0.152286, 1.052583, -0.204868],
-            [0.114503, 0.786281, 0.099216],
-            [-0.003882, -0.048116, 1.051998],
+            [0.1522, 1.0525, -0.2048],
+            [0.1145, 0.7862, 0.0992],
+            [-0.0038, -0.0481, 1.0519],
         ],
         [
-            [0.367322, 0.860646, -0.227968],
-            [0.280085, 0.672501, 0.047413],
-            [-0.011820, 0.042940, 0.968881],
+            [0.3673, 0.8606, -0.2279],
+            [0.2800, 0.6725, 0.0474],
+            [-0.0118, 0.0429, 0.9688],
         ],
         [
-            [1.255528, -0.076749, -0.178779],
-            [-0.078411, 0.930809, 0.147602],
-            [0.004733, 0.691367, 0.303900],
+            [1.2555, -0.0767, -0.1787],
+            [-0.0784, 0.9308, 0.1476],
+            [0.0047, 0.6913, 0.3039],
         ],
     ];
 

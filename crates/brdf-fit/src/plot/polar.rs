@@ -117,7 +117,7 @@ fn draw_grid(canvas: &mut Canvas, radii: &Axis, view: &View) -> Result<(), PlotE
 }
 
 fn draw_curves(canvas: &mut Canvas, radii: &Axis, curves: &Curves) -> Result<(), PlotError> {
-    for styled in &curves.curves {
+    for styled in &curves.all {
         let colour = ink(styled.colour);
         if let Some(mirror) = curves.view.mirror_deg(styled.curve.psi) {
             canvas.dashes(
@@ -138,10 +138,10 @@ fn draw_curves(canvas: &mut Canvas, radii: &Axis, curves: &Curves) -> Result<(),
             canvas.area(&outline, &colour.mix(BAND))?;
         }
     }
-    for styled in &curves.curves {
+    for styled in &curves.all {
         draw_readings(canvas, radii, styled)?;
     }
-    for styled in &curves.curves {
+    for styled in &curves.all {
         let line = styled.curve.theory.iter().map(|t| (t.theta_deg, t.value));
         draw_line(canvas, radii, line, styled, 1.8)?;
     }

@@ -45,10 +45,10 @@ fn draw(
 ) -> Result<(), PlotError> {
     draw_title(canvas, title)?;
     frame.draw(canvas, &curves.view.theta_name(), RESIDUAL)?;
-    let all: Vec<&Styled> = curves.curves.iter().collect();
+    let all: Vec<&Styled> = curves.all.iter().collect();
     draw_residuals(canvas, frame, &all, &curves.view)?;
     let mut legend = Legend::default();
-    legend.add_curves(&curves.curves, true);
+    legend.add_curves(&curves.all, true);
     if curves.error_bars() {
         legend.add(Key::ErrorBar, "1 sigma of a reading");
     }

@@ -102,7 +102,7 @@ fn draw(
     draw_title(canvas, title)?;
     let names = (curves.view.theta_name(), curves.view.quantity.axis_name());
     frame.draw(canvas, &names.0, names.1)?;
-    let all: Vec<&Styled> = curves.curves.iter().collect();
+    let all: Vec<&Styled> = curves.all.iter().collect();
     draw_curves(canvas, frame, &all, &curves.view)?;
     legend(curves, note).draw(canvas)
 }
@@ -161,7 +161,7 @@ fn draw_readings(canvas: &mut Canvas, frame: &Frame, styled: &Styled) -> Result<
 /// The legend of the figures of readings and theory.
 pub(super) fn legend(curves: &Curves, note: Option<&str>) -> Legend {
     let mut legend = Legend::default();
-    legend.add_curves(&curves.curves, curves.measured());
+    legend.add_curves(&curves.all, curves.measured());
     if curves.measured() {
         legend.add(Key::Mark(INK), "reading");
         legend.add(Key::Line(INK), "theory");

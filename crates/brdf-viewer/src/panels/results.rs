@@ -70,9 +70,9 @@ fn show_tables(ui: &mut Ui, sample: &Sample) {
 /// A plot of the results, with logarithmic axes where they are asked for.
 fn result_plot<'a>(name: &str, x: Axis, y: Axis) -> Plot<'a> {
     Plot::new(name.to_owned())
-        .x_grid_spacer(move |input| x.grid(input))
+        .x_grid_spacer(move |input| x.grid(&input))
         .x_axis_formatter(move |mark, range| x.label(mark, range))
-        .y_grid_spacer(move |input| y.grid(input))
+        .y_grid_spacer(move |input| y.grid(&input))
         .y_axis_formatter(move |mark, range| y.label(mark, range))
         .y_axis_min_width(60.0)
         .label_formatter(|_| None)

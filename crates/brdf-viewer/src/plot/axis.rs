@@ -45,7 +45,7 @@ impl Axis {
     }
 
     /// The lines of its grid.
-    pub fn grid(self, input: GridInput) -> Vec<GridMark> {
+    pub fn grid(self, input: &GridInput) -> Vec<GridMark> {
         match self {
             Self::Linear => linear(input),
             Self::Logarithmic => logarithmic(input),
@@ -70,7 +70,7 @@ impl Axis {
 }
 
 /// Lines at round values with room for a number at each, and finer ones between them.
-fn linear(input: GridInput) -> Vec<GridMark> {
+fn linear(input: &GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let numbered = round_number_above(A_NUMBER * input.base_step_size);
     let leading = numbered / 10_f64.powf(numbered.log10().floor());
@@ -90,7 +90,7 @@ fn linear(input: GridInput) -> Vec<GridMark> {
 }
 
 /// Decades, and between them 2 to 9; within less than a decade, equal steps of the value.
-fn logarithmic(input: GridInput) -> Vec<GridMark> {
+fn logarithmic(input: &GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let mark = |value: f64, step_size: f64| GridMark { value, step_size };
     if high - low < 0.7 {
@@ -175,7 +175,7 @@ fn in_powers(value: f64) -> String {
 }
 
 /// The lines of the grid of an angle in degrees.
-pub fn degrees(input: GridInput) -> Vec<GridMark> {
+pub fn degrees(input: &GridInput) -> Vec<GridMark> {
     let width = input.bounds.1 - input.bounds.0;
     if width < 40.0 {
         return linear(input);
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     fn values(axis: Axis, low: f64, high: f64) -> Vec<f64> {
-        let marks = axis.grid(GridInput {
+        let marks = axis.grid(&GridInput {
             bounds: (low, high),
             base_step_size: (high - low) / 40.0,
         });
@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn numbers_have_the_digits_of_their_step() {
-        assert_eq!(number(0.30000000000000004, 0.1), "0.3");
+        assert_eq!(number(0.1 + 0.2, 0.1), "0.3");
         assert_eq!(number(-1e-18, 0.1), "0.0");
         assert_eq!(number(40.0, 20.0), "40");
         assert_eq!(number(2e-7, 1e-7), "2.00e-7");

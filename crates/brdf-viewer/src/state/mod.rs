@@ -8,6 +8,7 @@ pub mod sample;
 pub mod saved;
 pub mod shown;
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -237,10 +238,16 @@ impl State {
         match command {
             Command::Open => self.effects.push(Effect::AskOpen),
             Command::OpenPath => self.ask_path(),
-            Command::Close => self.active.into_iter().for_each(|id| self.close(id)),
+            Command::Close => {
+                if let Some(id) = self.active {
+                    self.close(id);
+                }
+            }
             Command::CloseAll => {
                 let all: Vec<SampleId> = self.samples.iter().map(|sample| sample.id).collect();
-                all.into_iter().for_each(|id| self.close(id));
+                for id in all {
+                    self.close(id);
+                }
             }
             Command::Export(what) => {
                 let path = self.suggested(what);
@@ -363,7 +370,9 @@ impl State {
         let id = SampleId(self.next_id);
         self.next_id += 1;
         let taken = |family: &usize| self.samples.iter().any(|s| s.family == *family);
-        let family = (0..).find(|family| !taken(family)).unwrap_or(0);
+        // Of so many one more than there are samples, one is free.
+        let family = (0..=self.samples.len()).find(|family| !taken(family));
+        let family = family.unwrap_or(0);
         let sample = Sample::new(id, source, family, scans);
         self.status = format!("{source} opened");
         self.samples.push(sample);
@@ -522,7 +531,7 @@ impl State {
             return;
         };
         let text = parameter_table(sample);
-        self.status = "parameters copied".to_owned();
+        "parameters copied".clone_into(&mut self.status);
         self.effects.push(Effect::Copy(text));
     }
 
@@ -716,8 +725,9 @@ fn parameter_table(sample: &Sample) -> String {
         let interval = estimate.map(brdf_fit::uncertainty::Estimate::interval_95);
         let end = |end: Option<f64>| end.map_or_else(String::new, digits);
         let error = estimate.and_then(brdf_fit::uncertainty::Estimate::standard_error);
-        text += &format!(
-            "{parameter}\t{}\t{}\t{}\t{}\n",
+        let _ = writeln!(
+            text,
+            "{parameter}\t{}\t{}\t{}\t{}",
             parameter.of(&knobs.at),
             end(error),
             end(interval.and_then(|i| i.from)),

@@ -122,7 +122,7 @@ impl State {
             let (id, weights) = (sample.scan_id(), self.choice.weights);
             let sample = sample.clone();
             let shown = self.shown.scans.entry(id).or_default();
-            shown.refresh_errors(&sample, weights, self.choice.weights());
+            shown.refresh_errors(&sample, weights, &self.choice.weights());
             shown.refresh_reflectance(&sample);
         }
     }
@@ -157,7 +157,7 @@ impl ShownScan {
         &mut self,
         sample: &Sample,
         reading_weights: ReadingWeights,
-        weights: brdf_fit::weights::Weights,
+        weights: &brdf_fit::weights::Weights,
     ) {
         let scan = sample.scan();
         let (knobs, family) = (scan.knobs, scan.knobs.model.family());
@@ -165,7 +165,7 @@ impl ShownScan {
             if scan.readings() == 0 {
                 return Err("no readings".to_owned());
             }
-            Criterion::new(&scan.measurements, family, knobs.at.n, &weights)
+            Criterion::new(&scan.measurements, family, knobs.at.n, weights)
                 .map_err(|error| error.to_string())
         });
         self.errors.of((knobs, reading_weights), |_| {

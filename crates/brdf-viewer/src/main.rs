@@ -21,6 +21,7 @@ use eframe::egui;
 /// measured sample of its own.
 #[derive(Parser)]
 #[command(name = "viewer", version, max_term_width = 100)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 struct Arguments {
     /// Scans, or fits as JSON
     #[arg(value_name = "FILE")]
@@ -124,7 +125,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let result = match arguments.screenshot.clone() {
         Some(path) => take_screenshot(&arguments, &path),
-        None => open_window(arguments),
+        None => open_window(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -135,7 +136,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn open_window(arguments: Arguments) -> Result<(), String> {
+fn open_window(arguments: &Arguments) -> Result<(), String> {
     let settings = Settings::of(settings_file());
     let viewport = egui::ViewportBuilder::default()
         .with_title("brdf-viewer")
@@ -149,7 +150,7 @@ fn open_window(arguments: Arguments) -> Result<(), String> {
     };
     let create = |creation: &eframe::CreationContext| {
         let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(Native), settings);
-        start(&mut viewer, &arguments);
+        start(&mut viewer, arguments);
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
     eframe::run_native("brdf-viewer", options, Box::new(create)).map_err(|error| {

@@ -25,8 +25,7 @@ fn effect(command: Command, state: &State) -> bool {
         }
         Command::CopyParameters => state.status == "parameters copied",
         Command::Undo => state.history.can_redo(),
-        Command::ResetAll => k1(state) != 0.4,
-        Command::Fit => k1(state) != 0.4,
+        Command::ResetAll | Command::Fit => k1(state) != 0.4,
         Command::FitAll => state.samples[0]
             .scans
             .iter()

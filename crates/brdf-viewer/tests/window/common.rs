@@ -148,7 +148,11 @@ pub(crate) fn type_number(window: &mut Window, label: &str, text: &str) {
         .get_by_role_and_label(Role::SpinButton, label)
         .click();
     window.run();
-    let focused = window.get_by(egui_kittest::kittest::NodeT::is_focused);
+    #[expect(
+        clippy::redundant_closure_for_method_calls,
+        reason = "the type of the node is of a crate that is not ours to name"
+    )]
+    let focused = window.get_by(|node| node.is_focused());
     focused.type_text(text);
     window.run();
     window.key_press(egui::Key::Enter);

@@ -65,7 +65,7 @@ fn a_path_is_opened_and_remembered() {
     open_path(&mut window, &path);
     assert_eq!(names(&window), ["paint"]);
     assert_eq!(window.state().state.samples[0].scans.len(), 2);
-    assert_eq!(window.state().state.recent, [path.clone()]);
+    assert_eq!(window.state().state.recent, std::slice::from_ref(&path));
     menu(&mut window, "File", "Close all samples");
     assert!(names(&window).is_empty());
     window.get_by_role_and_label(Role::Button, "File").click();

@@ -187,7 +187,7 @@ fn a_long_fit_is_followed_and_cancelled() {
     let mut lengths = Vec::new();
     let mut longest_frame = Duration::ZERO;
     while lengths.last().is_none_or(|points| *points < 3) {
-        assert!(started.elapsed() < Duration::from_secs(60));
+        assert!(started.elapsed() < Duration::from_mins(1));
         let frame = Instant::now();
         window.step();
         longest_frame = longest_frame.max(frame.elapsed());

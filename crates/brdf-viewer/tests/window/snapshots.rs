@@ -67,7 +67,7 @@ fn check(dark: bool) {
 /// Times differ from run to run: they are made alike.
 fn mask_times(window: &mut Window) {
     let state = &mut window.state_mut().state;
-    state.status = "ready".to_owned();
+    "ready".clone_into(&mut state.status);
     for scan in state
         .samples
         .iter_mut()

@@ -4,11 +4,14 @@
 
 use std::fmt::Write as _;
 use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Native;
 use brdf_viewer::intent::{Command, Intent};
 use brdf_viewer::screenshot::Unseen;
+use brdf_viewer::state::fitting::{Scope, Stages};
 use brdf_viewer::state::saved::Settings;
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -32,7 +35,17 @@ fn window(sample: Intent) -> (Unseen, Viewer) {
     let mut window = Unseen::new([1280.0, 800.0], 1.0);
     let mut viewer = Viewer::new(window.context(), Box::new(Native), Settings::unkept());
     viewer.state.apply(sample);
-    window.picture(&mut viewer).expect("a picture");
+    let mut longest = Duration::ZERO;
+    loop {
+        let frame = Instant::now();
+        black_box(window.frame_and_triangles(&mut viewer));
+        longest = longest.max(frame.elapsed());
+        if !viewer.is_busy() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    println!("longest frame while it is opened: {longest:.1?}");
     (window, viewer)
 }
 
@@ -84,5 +97,45 @@ fn frames(criterion: &mut Criterion) {
     }
 }
 
-criterion_group!(benches, frames);
+/// Frames while everything under ../shared/data is fitted: said, not judged.
+fn while_fitting(_: &mut Criterion) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let files: Vec<PathBuf> = folder
+        .read_dir()
+        .into_iter()
+        .flatten()
+        .flatten()
+        .filter_map(|entry| entry.path().read_dir().ok())
+        .flat_map(|folder| folder.flatten().map(|entry| entry.path()))
+        .filter(|path| path.extension().is_some_and(|e| e == "csv"))
+        .collect();
+    if files.is_empty() {
+        println!("frames while fitting: skipped, no ../shared/data beside the project");
+        return;
+    }
+    let (mut window, mut viewer) = window(Intent::Open(files));
+    viewer.state.apply(Intent::Fit(Stages::Both, Scope::All));
+    let started = Instant::now();
+    let mut frames = Vec::new();
+    while viewer.is_busy() {
+        let frame = Instant::now();
+        black_box(window.frame_and_triangles(&mut viewer));
+        frames.push(frame.elapsed());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    frames.sort();
+    let run = viewer.state.run.as_ref().expect("a run");
+    println!(
+        "frames while {} scans of {} samples are fitted in {:.1} s: {} frames, median {:.1?}, 99 % below {:.1?}, longest {:.1?}",
+        run.jobs,
+        viewer.state.samples.len(),
+        started.elapsed().as_secs_f64(),
+        frames.len(),
+        frames[frames.len() / 2],
+        frames[frames.len() * 99 / 100],
+        frames[frames.len() - 1],
+    );
+}
+
+criterion_group!(benches, while_fitting, frames);
 criterion_main!(benches);

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use brdf_core::{Family, Geometry, ModelParameters};
 use brdf_fit::criterion::Criterion;
-use brdf_fit::plot::{Curve, Selection, View, curves};
+use brdf_fit::plot::{Curve, Layout, Quantity, Scale, Selection, View, curves};
 use brdf_fit::stages::IncidenceError;
 
 use super::State;
@@ -65,7 +65,7 @@ const PSI_STEP_DEG: f64 = 5.0;
 const TOLERANCE: f64 = 1e-4;
 
 type SelectionKey = (View, Vec<f64>, usize);
-type CurvesKey = (SelectionKey, Knobs, bool);
+type CurvesKey = (SelectionKey, Quantity, Knobs, bool);
 
 /// What is shown of one scan.
 #[derive(Debug, Clone, Default)]
@@ -131,13 +131,24 @@ impl State {
 impl ShownScan {
     fn refresh_curves(&mut self, sample: &Sample, view: &View, columns: usize) {
         let scan = sample.scan();
-        let key = (*view, scan.shown_psi(), columns);
+        // Of the view, what the readings and the curves depend on: axes and arrangement are drawn.
+        let view = View {
+            scale: Scale::default(),
+            layout: Layout::default(),
+            residuals: false,
+            ..*view
+        };
+        let plane = View {
+            quantity: Quantity::default(),
+            ..view
+        };
+        let key = (plane, scan.shown_psi(), columns);
         let selection = self.selection.of(key.clone(), |(view, psi, columns)| {
             Selection::of(&scan.measurements, view, Some(psi), *columns)
         });
         let report = scan.fit_shown();
         let uncertainty = report.and_then(|report| report.uncertainty.as_ref());
-        let key = (key, scan.knobs, uncertainty.is_some());
+        let key = (key, view.quantity, scan.knobs, uncertainty.is_some());
         self.curves.of(key, |_| {
             let Some(brdf) = scan.knobs.brdf() else {
                 return Vec::new();
@@ -149,7 +160,7 @@ impl ShownScan {
             let sigma = sigma
                 .as_ref()
                 .map(|sigma| sigma as &dyn Fn(&Geometry) -> f64);
-            curves(&scan.measurements, selection, &brdf, sigma, view)
+            curves(&scan.measurements, selection, &brdf, sigma, &view)
         });
     }
 

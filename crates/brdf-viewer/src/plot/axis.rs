@@ -94,10 +94,11 @@ fn logarithmic(input: &GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let mark = |value: f64, step_size: f64| GridMark { value, step_size };
     if high - low < 0.7 {
+        let apart = (high - low) / 10.0;
         let (low, high) = (10_f64.powf(low), 10_f64.powf(high));
         let steps = marks_every(low, high, round_number_above((high - low) / 10.0));
         let inside = steps.into_iter().filter(|step| step.value > 0.0);
-        return inside.map(|step| mark(step.value.log10(), 1.0)).collect();
+        return inside.map(|step| mark(step.value.log10(), apart)).collect();
     }
     let (first, last) = (low.floor(), high.ceil());
     let decades = last - first;

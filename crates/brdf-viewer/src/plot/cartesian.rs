@@ -2,7 +2,6 @@
 //! residuals below.
 
 use brdf_fit::plot::{Layout, Reading, View, value_range};
-use brdf_fit::read::Side;
 use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, Plot, PlotResponse};
 
@@ -160,7 +159,7 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
     if !narrow {
         y = y.label(value);
         if lowest {
-            x = x.label(theta_name(&place.state.view));
+            x = x.label(place.state.view.theta_name());
         }
     }
     let mut plot = Plot::new(place.name)
@@ -180,23 +179,6 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
         plot = plot.link_axis(id, axes);
     }
     plot
-}
-
-/// The name of the axis of view angles.
-fn theta_name(view: &View) -> String {
-    if view.azimuth == 0.0 {
-        let side = match view.theta_positive {
-            Side::Source => "source",
-            Side::Forward => "forward",
-        };
-        return format!("view angle theta / deg ({side} side positive)");
-    }
-    let azimuth = match view.theta_positive {
-        Side::Source => view.azimuth,
-        Side::Forward => view.azimuth + std::f64::consts::PI,
-    };
-    let azimuth = crate::panels::degrees(azimuth);
-    format!("view angle theta / deg (positive towards phi = {azimuth})")
 }
 
 fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {

@@ -261,6 +261,21 @@ fn another_convention_gives_the_same_fit() {
     let turned_back = run(path.to_str().unwrap(), &["--theta-positive", "forward"]);
     assert_eq!(turned_back, run(&measured("z307_on_aluminium.csv"), &[]));
 
+    let json = folder.path().join("fit.json");
+    let told = run_fit([
+        path.to_str().unwrap(),
+        "--n",
+        "1.5",
+        "--theta-positive",
+        "forward",
+        "--json",
+        json.to_str().unwrap(),
+    ]);
+    assert!(stdout(&told).contains("readings, read with theta positive forward"));
+    // What is fitted again is read again as it was.
+    let again = run_fit([path.to_str().unwrap(), "--again", json.to_str().unwrap()]);
+    assert!(stdout(&again).contains("readings, read with theta positive forward"));
+
     let wrong = run_fit([path.to_str().unwrap(), "--n", "1.5"]);
     assert!(
         stdout(&wrong).contains("--theta-positive forward"),
@@ -418,7 +433,7 @@ fn the_help_names_every_option_with_its_unit_and_default() {
         "[default: 10000]",
         "--theta-positive <SIDE>",
         "--phi-zero <SIDE>",
-        "[default: source]",
+        "source or forward",
         "--params-only",
         "Exit status",
     ] {

@@ -6,6 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use brdf_core::{Geometry, GeometryError};
 use serde::{Deserialize, Serialize};
 
+use crate::read::Convention;
 use crate::refractive_index::RefractiveIndex;
 
 /// One reading. Angles in radians in the model's convention: a positive theta at phi = 0 is the
@@ -140,6 +141,8 @@ pub struct Measurements {
     pub refractive_index: Option<RefractiveIndex>,
     /// Columns of the file that were not used.
     pub ignored_columns: Vec<String>,
+    /// The angular convention of the file; the readings here are in the model's.
+    pub convention: Convention,
     pub(crate) readings: Vec<Measurement>,
 }
 
@@ -278,6 +281,7 @@ impl Measurements {
             metadata: self.metadata.clone(),
             refractive_index: self.refractive_index.clone(),
             ignored_columns: self.ignored_columns.clone(),
+            convention: self.convention,
             readings: Vec::new(),
         }
     }

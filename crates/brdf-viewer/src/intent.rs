@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use brdf_fit::model::{Model, Parameter};
 use brdf_fit::plot::View;
+use brdf_fit::read::Convention;
 
 use crate::state::fitting::{FitChoice, Scope, Stages};
 use crate::state::interface::{ResultTab, Side};
@@ -32,6 +33,8 @@ pub enum Intent {
     ShowIncidence(SampleId, usize, bool),
     /// Show all incidences of a sample, or none.
     ShowAllIncidences(SampleId, bool),
+    /// Read files in another angular convention from now on.
+    Convention(Convention),
     /// Look at the data in another way.
     View(View),
     /// Other parameters of the active sample.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use brdf_fit::model::Model;
+use brdf_fit::read::{Convention, Side};
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Native;
 use brdf_viewer::intent::{Command, Intent};
@@ -30,6 +31,16 @@ struct Arguments {
     /// Write a picture of the window to this file, as PNG, and leave; needs no display
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
+
+    /// The side of the surface normal on which the scans count theta positive, source or forward
+    /// [default: as it was left, or source]
+    #[arg(long, value_name = "SIDE")]
+    theta_positive: Option<Side>,
+
+    /// The side on which the azimuth phi of the scans is zero, source or forward [default: as it was
+    /// left, or source]
+    #[arg(long, value_name = "SIDE")]
+    phi_zero: Option<Side>,
 
     /// Size of the window in points, at least 900x600 [default: as it was left, or 1280x800]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
@@ -181,6 +192,11 @@ fn take_screenshot(arguments: &Arguments, path: &Path) -> Result<(), String> {
 
 /// What the options say is to be done.
 fn start(viewer: &mut Viewer, arguments: &Arguments) {
+    let left = viewer.state.convention;
+    viewer.state.apply(Intent::Convention(Convention {
+        theta_positive: arguments.theta_positive.unwrap_or(left.theta_positive),
+        phi_zero: arguments.phi_zero.unwrap_or(left.phi_zero),
+    }));
     viewer.open_at_start(arguments.files.clone());
     set_view(viewer, arguments);
     let model = arguments.model.map(Intent::Model);

@@ -12,6 +12,7 @@ use std::thread;
 use brdf_core::{AnyBrdf, Geometry};
 use brdf_fit::output::write_file;
 use brdf_fit::plot::{self, View, figure_of};
+use brdf_fit::read::Convention;
 use brdf_fit::report::{Depth, Document, ModelChoice, Report, write_theory};
 use brdf_fit::watch::{Step, Watch};
 use brdf_fit::{FitOptions, Measurements};
@@ -26,10 +27,10 @@ const PNG_SCALE: f32 = 3.0;
 /// Work.
 #[derive(Debug)]
 pub enum Job {
-    /// Read a scan, or a fit as JSON.
-    Read(PathBuf),
-    /// Read a file that is already here: its name and its bytes.
-    ReadBytes(String, Vec<u8>),
+    /// Read a scan in this angular convention, or a fit as JSON, which says in which its scan is.
+    Read(PathBuf, Convention),
+    /// Read a scan that is already here: its name, its bytes and its angular convention.
+    ReadBytes(String, Vec<u8>, Convention),
     /// Fit these scans one after the other.
     Fit(Vec<FitJob>, Depth),
     /// Write a file.
@@ -223,11 +224,11 @@ fn fit_all(jobs: Vec<FitJob>, depth: Depth, cancel: &AtomicBool, events: &Events
 
 fn work_on_file(job: Job) -> Event {
     match job {
-        Job::Read(path) => match read(&path) {
+        Job::Read(path, convention) => match read(&path, convention) {
             Ok(scans) => Event::Opened(path.display().to_string(), Some(path), scans),
             Err(error) => Event::NotOpened(error),
         },
-        Job::ReadBytes(name, bytes) => match read_text(&name, &bytes) {
+        Job::ReadBytes(name, bytes, convention) => match read_text(&name, &bytes, convention) {
             Ok(scans) => Event::Opened(name, None, scans),
             Err(error) => Event::NotOpened(error),
         },
@@ -244,17 +245,21 @@ fn is_fit(path: &Path) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
-fn read(path: &Path) -> Result<Vec<Scan>, String> {
+fn read(path: &Path, convention: Convention) -> Result<Vec<Scan>, String> {
     if is_fit(path) {
-        return read_fit(path);
+        read_fit(path)
+    } else {
+        read_scan(path, convention)
     }
-    Measurements::read_csv(path)
+}
+
+fn read_scan(path: &Path, convention: Convention) -> Result<Vec<Scan>, String> {
+    Measurements::read_csv_with(path, convention)
         .map(scans)
         .map_err(|error| error.to_string())
 }
 
-fn read_text(name: &str, bytes: &[u8]) -> Result<Vec<Scan>, String> {
-    let convention = brdf_fit::read::Convention::default();
+fn read_text(name: &str, bytes: &[u8], convention: Convention) -> Result<Vec<Scan>, String> {
     Measurements::from_reader_with(bytes, name, convention)
         .map(scans)
         .map_err(|error| error.to_string())
@@ -269,10 +274,13 @@ fn scans(measurements: Measurements) -> Vec<Scan> {
 fn read_fit(path: &Path) -> Result<Vec<Scan>, String> {
     let document = Document::read(path).map_err(|error| error.to_string())?;
     let mut all = Vec::new();
-    let mut files: Vec<&str> = document.reports.iter().map(|r| r.file.as_str()).collect();
+    let reports = document.reports.iter();
+    let mut files: Vec<(&str, Convention)> = reports
+        .map(|report| (report.file.as_str(), report.convention))
+        .collect();
     files.dedup();
-    for file in files {
-        let mut scans = read_scan_of(path, file)?;
+    for (file, convention) in files {
+        let mut scans = read_scan_of(path, file, convention)?;
         for scan in &mut scans {
             let wavelength = scan.wavelength_um();
             let of_this =
@@ -288,7 +296,7 @@ fn read_fit(path: &Path) -> Result<Vec<Scan>, String> {
 }
 
 /// The scan that a fit names: as it is named, beside the fit, or among the built-in ones.
-fn read_scan_of(fit: &Path, file: &str) -> Result<Vec<Scan>, String> {
+fn read_scan_of(fit: &Path, file: &str, convention: Convention) -> Result<Vec<Scan>, String> {
     let beside = fit.parent().map(|folder| folder.join(file));
     let same_folder = fit
         .parent()
@@ -298,11 +306,11 @@ fn read_scan_of(fit: &Path, file: &str) -> Result<Vec<Scan>, String> {
         .flatten()
     {
         if path.is_file() {
-            return read(&path);
+            return read_scan(&path, convention);
         }
     }
     match built_in::text_of(file) {
-        Some(text) => read_text(file, text.as_bytes()),
+        Some(text) => read_text(file, text.as_bytes(), convention),
         None => Err(format!(
             "{}: is a fit of {file}, which cannot be found: expected the scan where the fit names \
              it, or beside the fit",

@@ -113,13 +113,15 @@ struct Arguments {
     #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
     g2: Option<AngleWeight>,
 
-    /// The side of the surface normal on which the files count theta positive
-    #[arg(long, value_enum, value_name = "SIDE", default_value = "source")]
-    theta_positive: FileSide,
+    /// The side of the surface normal on which the files count theta positive, source or forward
+    /// [default: source; with --again as it was]
+    #[arg(long, value_name = "SIDE")]
+    theta_positive: Option<Side>,
 
-    /// The side on which the azimuth phi of the files is zero
-    #[arg(long, value_enum, value_name = "SIDE", default_value = "source")]
-    phi_zero: FileSide,
+    /// The side on which the azimuth phi of the files is zero, source or forward [default: source;
+    /// with --again as it was]
+    #[arg(long, value_name = "SIDE")]
+    phi_zero: Option<Side>,
 
     /// Write everything about every fit to this file, as JSON with a format version
     #[arg(long, value_name = "FILE")]
@@ -191,21 +193,6 @@ fn parse_energy_limit(text: &str) -> Result<f64, String> {
         Ok(limit)
     } else {
         Err("expected degrees from 0 to below 90".to_owned())
-    }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum FileSide {
-    Source,
-    Forward,
-}
-
-impl From<FileSide> for Side {
-    fn from(side: FileSide) -> Self {
-        match side {
-            FileSide::Source => Self::Source,
-            FileSide::Forward => Self::Forward,
-        }
     }
 }
 
@@ -308,10 +295,12 @@ impl Arguments {
         self.again.as_ref().map(Document::read).transpose()
     }
 
-    fn convention(&self) -> Convention {
+    /// How the files are read: as the options say, else as those of the document were.
+    fn convention(&self, document: Option<&Document>) -> Convention {
+        let before = document.map_or_else(Convention::default, |d| d.reports[0].convention);
         Convention {
-            theta_positive: self.theta_positive.into(),
-            phi_zero: self.phi_zero.into(),
+            theta_positive: self.theta_positive.unwrap_or(before.theta_positive),
+            phi_zero: self.phi_zero.unwrap_or(before.phi_zero),
         }
     }
 }
@@ -347,7 +336,7 @@ fn main() -> ExitCode {
             return Outcome::BadUsageOrFile.into();
         }
     };
-    let (scans, read) = read_all(&arguments);
+    let (scans, read) = read_all(&arguments, arguments.convention(document.as_ref()));
     let (jobs, planned) = plan(&scans, &arguments, document.as_ref());
     let mut outcome = read.max(planned);
     let results = fit_all(&jobs, &arguments);
@@ -378,8 +367,7 @@ fn main() -> ExitCode {
 }
 
 /// Reads every file, and complains about those that cannot be read.
-fn read_all(arguments: &Arguments) -> (Vec<Measurements>, Outcome) {
-    let convention = arguments.convention();
+fn read_all(arguments: &Arguments, convention: Convention) -> (Vec<Measurements>, Outcome) {
     let files: Vec<Result<Measurements, ReadError>> = arguments
         .files
         .par_iter()

@@ -347,6 +347,7 @@ impl<'a> Input<'a> {
                 .refractive_index()
                 .or(preamble.said.refractive_index),
             ignored_columns: columns.ignored,
+            convention,
             readings,
         })
     }

@@ -3,7 +3,9 @@
 pub mod csv;
 mod fields;
 
+use std::fmt;
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
@@ -18,13 +20,37 @@ pub enum Side {
     Forward,
 }
 
+impl FromStr for Side {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "source" => Ok(Self::Source),
+            "forward" => Ok(Self::Forward),
+            _ => Err(format!("\"{text}\": expected source or forward")),
+        }
+    }
+}
+
 /// The angular convention of a file.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Convention {
     /// The side on which theta counts positive.
     pub theta_positive: Side,
     /// The side on which phi is zero.
     pub phi_zero: Side,
+}
+
+/// What differs from the model's convention, in words; nothing where it is that.
+impl fmt::Display for Convention {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.theta_positive, self.phi_zero) {
+            (Side::Source, Side::Source) => Ok(()),
+            (Side::Forward, Side::Source) => f.write_str("theta positive forward"),
+            (Side::Source, Side::Forward) => f.write_str("phi zero forward"),
+            (Side::Forward, Side::Forward) => f.write_str("theta positive and phi zero forward"),
+        }
+    }
 }
 
 /// Why a file cannot be read as a scan: where, what stands there, and what was expected.

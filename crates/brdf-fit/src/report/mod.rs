@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 use crate::assessment::{Assessment, assess_watched, sufficient_model};
 use crate::measurement::{Measurement, Measurements, Metadata};
 use crate::model::Model;
+use crate::read::Convention;
 use crate::solver::Ending;
 use crate::stages::{Fit, FitError, FitOptions, fit_scan};
 use crate::uncertainty::Uncertainty;
@@ -37,6 +38,9 @@ pub struct Report {
     pub metadata: Metadata,
     /// Columns of the file that were not used.
     pub ignored_columns: Vec<String>,
+    /// The angular convention in which the file was read.
+    #[serde(default)]
+    pub convention: Convention,
     /// Wavelength in micrometres, where the file states one.
     pub wavelength_um: Option<f64>,
     /// The model that was to be fitted.
@@ -116,6 +120,7 @@ impl Report {
             file: measurements.source.clone(),
             metadata: measurements.metadata.clone(),
             ignored_columns: measurements.ignored_columns.clone(),
+            convention: measurements.convention,
             wavelength_um: measurements.wavelengths().first().copied().flatten(),
             readings: measurements.readings().len(),
             model: options.model,

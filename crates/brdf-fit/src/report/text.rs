@@ -9,6 +9,7 @@ use crate::assessment::{Assessment, Physics};
 use crate::criterion::MOST_FOLDS;
 use crate::measurement::Measurement;
 use crate::model::{K1_RANGE, Model, Parameter};
+use crate::read::Convention;
 use crate::robust::REJECTED;
 use crate::stages::{Fit, Stage};
 use crate::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
@@ -106,7 +107,11 @@ impl Report {
                 );
             }
         }
-        let _ = writeln!(text, "{}", counted(self.readings, "reading"));
+        text += &counted(self.readings, "reading");
+        if self.convention != Convention::default() {
+            let _ = write!(text, ", read with {}", self.convention);
+        }
+        text.push('\n');
         text
     }
 }

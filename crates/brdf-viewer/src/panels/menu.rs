@@ -1,5 +1,6 @@
 //! The menus, with the key of each command.
 
+use brdf_fit::read::{Convention, Side};
 use egui::{Button, MenuBar, Panel, Ui};
 
 use crate::intent::{Command, Intent};
@@ -21,6 +22,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                         }
                         if *entry == Some(Command::OpenPath) {
                             show_recent(ui, state, intents);
+                            show_convention(ui, state.convention, intents);
                         }
                     }
                 });
@@ -56,6 +58,39 @@ fn show_recent(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                 }
             }
         });
+    });
+}
+
+/// Which way the angles of the next files go.
+fn show_convention(ui: &mut Ui, convention: Convention, intents: &mut Vec<Intent>) {
+    let sides = [
+        ("the source's side", Side::Source),
+        ("the forward side", Side::Forward),
+    ];
+    ui.menu_button("Angles in files", |ui| {
+        for (words, side) in sides {
+            let at = Convention {
+                theta_positive: side,
+                ..convention
+            };
+            let text = format!("theta positive on {words}");
+            if ui.radio(at == convention, text).clicked() {
+                intents.push(Intent::Convention(at));
+            }
+        }
+        ui.separator();
+        for (words, side) in sides {
+            let at = Convention {
+                phi_zero: side,
+                ..convention
+            };
+            if ui
+                .radio(at == convention, format!("phi zero on {words}"))
+                .clicked()
+            {
+                intents.push(Intent::Convention(at));
+            }
+        }
     });
 }
 

@@ -14,6 +14,7 @@ use std::sync::Arc;
 
 use brdf_fit::model::Parameter;
 use brdf_fit::plot::{Layout, Quantity, Scale, View};
+use brdf_fit::read::Convention;
 use brdf_fit::words::digits;
 
 use crate::intent::{Command, Export, Intent};
@@ -22,7 +23,7 @@ use fitting::{FitChoice, FitRun, Progress, Scope, Stages};
 use history::{Change, History};
 use interface::{Dialog, Interface, Message, Severity, Side};
 use sample::{Knobs, Sample, SampleId, Scan, ScanId};
-use saved::{MOST_RECENT, Saved};
+use saved::{MOST_RECENT, Opened, Saved};
 use shown::Shown;
 
 /// So many messages are kept; older ones go.
@@ -58,6 +59,8 @@ pub struct State {
     pub columns: usize,
     /// What of the window is shown.
     pub interface: Interface,
+    /// The angular convention in which files are read.
+    pub convention: Convention,
     /// The settings of the next fit.
     pub choice: FitChoice,
     /// The fits that run, or ran last.
@@ -88,6 +91,7 @@ impl State {
         Self {
             view: saved.view,
             interface: saved.interface.clone(),
+            convention: saved.convention,
             choice: saved.choice.clone(),
             recent: saved.recent.clone(),
             columns: 400,
@@ -100,9 +104,10 @@ impl State {
         Saved {
             view: self.view,
             interface: self.interface.clone(),
+            convention: self.convention,
             choice: self.choice.clone(),
             recent: self.recent.clone(),
-            open: self.samples.iter().map(|s| s.source.clone()).collect(),
+            open: self.samples.iter().map(Opened::of).collect(),
             window,
             ..Saved::default()
         }
@@ -179,7 +184,9 @@ impl State {
         match intent {
             Intent::Do(command) => self.command(command),
             Intent::Open(paths) => self.open(paths),
-            Intent::OpenBytes(name, bytes) => self.start(Job::ReadBytes(name, bytes)),
+            Intent::OpenBytes(name, bytes) => {
+                self.start(Job::ReadBytes(name, bytes, self.convention));
+            }
             Intent::OpenBuiltIn(entry) => self.open_built_in(entry),
             Intent::Close(id) => self.close(id),
             Intent::ShowSample(id, visible) => self.change(id, |s| s.visible = visible),
@@ -195,6 +202,7 @@ impl State {
                     incidence.shown = shown;
                 }
             }),
+            Intent::Convention(convention) => self.convention = convention,
             Intent::View(view) => self.view = view,
             Intent::Turn(knobs) => self.turn(|_| knobs),
             Intent::Model(model) => self.turn(|knobs| Knobs {
@@ -335,7 +343,7 @@ impl State {
     }
 
     fn start(&mut self, job: Job) {
-        if matches!(job, Job::Read(_) | Job::ReadBytes(..)) {
+        if matches!(job, Job::Read(..) | Job::ReadBytes(..)) {
             self.reading += 1;
         }
         self.effects.push(Effect::Job(job));
@@ -343,7 +351,7 @@ impl State {
 
     fn open(&mut self, paths: Vec<PathBuf>) {
         for path in paths {
-            self.start(Job::Read(path));
+            self.start(Job::Read(path, self.convention));
         }
     }
 
@@ -355,11 +363,11 @@ impl State {
         }
     }
 
-    /// Opens what was open the last time, under the name that it then had.
-    pub fn reopen(&mut self, source: &str) {
-        match built_in::entry_of(source) {
+    /// Opens what was open the last time, under the name and in the convention that it then had.
+    pub fn reopen(&mut self, opened: &Opened) {
+        match built_in::entry_of(&opened.source) {
             Some(entry) => self.open_built_in(entry),
-            None => self.open(vec![PathBuf::from(source)]),
+            None => self.start(Job::Read(PathBuf::from(&opened.source), opened.convention)),
         }
     }
 

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use brdf_fit::output::write_file;
 use brdf_fit::plot::View;
+use brdf_fit::read::Convention;
 use serde::{Deserialize, Serialize};
 
 use super::fitting::FitChoice;
 use super::interface::Interface;
+use super::sample::Sample;
 
 /// Version of the file.
 const VERSION: u32 = 1;
@@ -30,14 +32,35 @@ pub struct Saved {
     pub view: View,
     /// What of the window is shown.
     pub interface: Interface,
+    /// The angular convention in which files are read.
+    pub convention: Convention,
     /// The settings of the fit.
     pub choice: FitChoice,
     /// The files that were opened last, the latest first.
     pub recent: Vec<PathBuf>,
     /// What was open: files, and entries of the built-in menu.
-    pub open: Vec<String>,
+    pub open: Vec<Opened>,
     /// The size of the window, in points.
     pub window: [f32; 2],
+}
+
+/// Something that was open.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Opened {
+    /// A file, or an entry of the built-in menu.
+    pub source: String,
+    /// The angular convention of the file.
+    pub convention: Convention,
+}
+
+impl Opened {
+    /// What a sample was opened from.
+    pub fn of(sample: &Sample) -> Self {
+        Self {
+            source: sample.source.clone(),
+            convention: sample.scan().measurements.convention,
+        }
+    }
 }
 
 impl Default for Saved {
@@ -46,6 +69,7 @@ impl Default for Saved {
             version: VERSION,
             view: View::default(),
             interface: Interface::default(),
+            convention: Convention::default(),
             choice: FitChoice::default(),
             recent: Vec::new(),
             open: Vec::new(),

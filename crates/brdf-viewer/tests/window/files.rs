@@ -7,9 +7,10 @@ use crate::common::{
     NoDialogs, Window, click, click_role, drop_file, empty, menu, settle, shows, type_number,
     window_with, with_z307, z307,
 };
+use brdf_fit::read::{Convention, Side};
 use brdf_fit::report::Document;
 use brdf_viewer::dialogs::Dialogs;
-use brdf_viewer::intent::Export;
+use brdf_viewer::intent::{Export, Intent};
 use brdf_viewer::state::saved::Settings;
 use brdf_viewer::worker::{Event, Events};
 use egui::accesskit::Role;
@@ -297,6 +298,67 @@ fn a_fit_of_a_built_in_sample_is_read_back() {
             .fit_shown()
             .is_some()
     );
+}
+
+#[test]
+fn a_fit_that_names_a_fit_as_its_scan_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fit.json");
+    let mut window = with_z307();
+    click(&mut window, "Both stages");
+    export_fit(&mut window, &json);
+    let text = std::fs::read_to_string(&json).unwrap();
+    let itself = text.replace("data/measured/z307_on_aluminium.csv", "fit.json");
+    assert_ne!(itself, text);
+    std::fs::write(&json, itself).unwrap();
+    open_path(&mut window, &json);
+    let error = &window.state().state.errors()[0];
+    assert!(error.contains("fit.json, line 1"), "{error}");
+}
+
+#[test]
+fn the_angles_of_a_file_are_read_as_the_user_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scan, json) = (
+        folder.path().join("turned.csv"),
+        folder.path().join("fit.json"),
+    );
+    let rows = "psi_deg,theta_deg,brdf_per_sr\n30,-30,0.1\n30,0,0.2\n30,30,0.9\n30,45,0.5\n";
+    std::fs::write(&scan, rows).unwrap();
+    let mut window = empty();
+    menu(&mut window, "File", "Angles in files");
+    window
+        .get_by_label("theta positive on the forward side")
+        .click();
+    window.run();
+    open_path(&mut window, &scan);
+    let check = |window: &Window| {
+        let measurements = &window
+            .state()
+            .state
+            .active_sample()
+            .unwrap()
+            .scan()
+            .measurements;
+        let brightest = measurements.readings()[2];
+        assert!((brightest.theta + 30_f64.to_radians()).abs() < 1e-12);
+        assert_eq!(measurements.convention.theta_positive, Side::Forward);
+    };
+    check(&window);
+    click(&mut window, "Stage 1");
+    export_fit(&mut window, &json);
+    // The fit knows how its scan was read, whatever holds for the next file.
+    menu(&mut window, "File", "Close all samples");
+    let convention = Convention::default();
+    window
+        .state_mut()
+        .state
+        .apply(Intent::Convention(convention));
+    open_path(&mut window, &json);
+    check(&window);
+    let saved = window.state().state.saved([900.0, 600.0]);
+    assert_eq!(saved.open[0].convention.theta_positive, Side::Forward);
+    assert_eq!(saved.convention, convention);
 }
 
 #[test]

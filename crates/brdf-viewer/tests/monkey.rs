@@ -51,6 +51,9 @@ const KEYS: [Key; 30] = [
 /// More memory than this over that after the first tenth is a leak, in bytes.
 const MOST_GROWTH: u64 = 400 << 20;
 
+/// More memory than this at any time is a drawing without end, in bytes.
+const MOST_MEMORY: u64 = 2 << 30;
+
 fn setting(name: &str, otherwise: u64) -> u64 {
     let text = std::env::var(name).ok();
     text.map_or(otherwise, |text| text.parse().expect("a whole number"))
@@ -77,6 +80,8 @@ fn random_events_do_not_break_the_window() {
         }
         if events.is_multiple_of(200) {
             keep_it_alive(&mut window, &mut random);
+            let now = memory().unwrap_or(0);
+            assert!(now < MOST_MEMORY, "{} MiB after {events} events", now >> 20);
         }
         if first_memory.is_none() && started.elapsed() > limit / 10 {
             first_memory = memory();

@@ -70,6 +70,58 @@ fn place(transform: &PlotTransform, [x, y]: [f64; 2]) -> Pos2 {
     position.clamp(frame.min - vec2(FAR, FAR), frame.max + vec2(FAR, FAR))
 }
 
+/// The part of a segment that is within `margin` points of the plot, in points. It is cut in double
+/// precision before it becomes a position: where a plot is zoomed in, a segment can be longer than
+/// any number of pixels that could be drawn.
+fn segment(transform: &PlotTransform, [a, b]: [[f64; 2]; 2], margin: f32) -> Option<[Pos2; 2]> {
+    let (frame, bounds) = (transform.frame().expand(margin), transform.bounds());
+    let point = |[x, y]: [f64; 2]| {
+        let part = [
+            (x - bounds.min()[0]) / bounds.width(),
+            (bounds.max()[1] - y) / bounds.height(),
+        ];
+        let inner = transform.frame();
+        [
+            f64::from(inner.left()) + part[0] * f64::from(inner.width()),
+            f64::from(inner.top()) + part[1] * f64::from(inner.height()),
+        ]
+    };
+    let (a, b) = (point(a), point(b));
+    let sides = [frame.x_range(), frame.y_range()];
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for ((a, b), side) in a.into_iter().zip(b).zip(sides) {
+        if !(a.is_finite() && b.is_finite()) {
+            return None;
+        }
+        let reach = |side: f32| (f64::from(side) - a) / (b - a);
+        if a != b {
+            let (low, high) = (reach(side.min), reach(side.max));
+            from = from.max(low.min(high));
+            to = to.min(low.max(high));
+        } else if !side.contains(a as f32) {
+            return None;
+        }
+    }
+    let at = |t: f64| {
+        let [x, y] = [0, 1].map(|i| (a[i] + t * (b[i] - a[i])) as f32);
+        pos2(x, y)
+    };
+    (from <= to).then(|| [at(from), at(to)])
+}
+
+/// A dashed segment, as far as it is to be seen.
+pub fn dashed(
+    transform: &PlotTransform,
+    ends: [[f64; 2]; 2],
+    colour: Color32,
+    shapes: &mut Vec<Shape>,
+) {
+    let stroke = Stroke::new(1.0, colour.gamma_multiply(0.6));
+    if let Some(seen) = segment(transform, ends, MARK) {
+        shapes.extend(Shape::dashed_line(&seen, stroke, 4.0, 4.0));
+    }
+}
+
 /// A line over the view angle, interrupted where the axis has no place for it.
 pub fn line(
     transform: &PlotTransform,
@@ -85,11 +137,21 @@ pub fn line(
         }
         run.clear();
     };
+    let mut before = None;
     for (x, value) in points {
-        match axis.place(value) {
-            Some(y) => run.push(place(transform, [x, y])),
+        let here = axis.place(value).map(|y| [x, y]);
+        let ends = before.zip(here);
+        match ends.and_then(|(a, b)| segment(transform, [a, b], FAR)) {
+            Some([from, to]) => {
+                if run.last() != Some(&from) {
+                    end(&mut run);
+                    run.push(from);
+                }
+                run.push(to);
+            }
             None => end(&mut run),
         }
+        before = here;
     }
     end(&mut run);
 }
@@ -195,11 +257,61 @@ pub fn mark_at(mark: MarkShape, at: Pos2, size: f32, colour: Color32) -> Shape {
 
 /// An upright dashed line over the whole plot.
 pub fn upright(transform: &PlotTransform, x: f64, colour: Color32, shapes: &mut Vec<Shape>) {
-    let frame = transform.frame();
-    let x = transform.position_from_point_x(x);
-    if frame.x_range().contains(x) {
-        let ends = [pos2(x, frame.top()), pos2(x, frame.bottom())];
-        let stroke = Stroke::new(1.0, colour.gamma_multiply(0.6));
-        shapes.extend(Shape::dashed_line(&ends, stroke, 4.0, 4.0));
+    let ([_, bottom], [_, top]) = (transform.bounds().min(), transform.bounds().max());
+    dashed(transform, [[x, top], [x, bottom]], colour, shapes);
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::Rect;
+    use egui::Vec2b;
+
+    use super::*;
+
+    /// A plot of 400 x 300 points that shows `width` of the plane around (0, 1).
+    fn zoomed(width: f64) -> PlotTransform {
+        let bounds = PlotBounds::from_min_max([-width, 1.0 - width], [width, 1.0 + width]);
+        let frame = Rect::from_min_size(pos2(10.0, 20.0), vec2(400.0, 300.0));
+        PlotTransform::new(frame, bounds, Vec2b::FALSE)
+    }
+
+    #[test]
+    fn what_is_drawn_does_not_grow_with_the_zoom() {
+        for exponent in -15..3 {
+            let transform = zoomed(10_f64.powi(exponent));
+            let mut shapes = Vec::new();
+            dashed(
+                &transform,
+                [[0.0, 0.0], [0.0, 2.0]],
+                Color32::RED,
+                &mut shapes,
+            );
+            dashed(
+                &transform,
+                [[-3.0, -2.0], [3.0, 4.0]],
+                Color32::RED,
+                &mut shapes,
+            );
+            upright(&transform, 0.0, Color32::RED, &mut shapes);
+            assert!(
+                (30..300).contains(&shapes.len()),
+                "{exponent}: {}",
+                shapes.len()
+            );
+        }
+    }
+
+    #[test]
+    fn a_line_is_cut_where_it_really_leaves() {
+        // Through (0, 1) at 45 deg of the plane, to ends that are 1e9 plots away.
+        let transform = zoomed(1e-9);
+        let ends = segment(&transform, [[-1.0, 0.0], [3.0, 4.0]], 0.0).unwrap();
+        assert!((ends[0] - pos2(10.0, 320.0)).length() < 0.01, "{ends:?}");
+        assert!((ends[1] - pos2(410.0, 20.0)).length() < 0.01, "{ends:?}");
+        assert_eq!(segment(&transform, [[1.0, 0.0], [2.0, 3.0]], 0.0), None);
+        assert_eq!(
+            segment(&transform, [[0.0, f64::NAN], [0.0, 1.0]], 0.0),
+            None
+        );
     }
 }

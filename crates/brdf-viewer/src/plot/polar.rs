@@ -76,9 +76,8 @@ fn draw(
 ) {
     let at = |point: [f64; 2]| transform.position_from_point(&PlotPoint::new(point[0], point[1]));
     if let Some(mirror) = plots.state.view.mirror_deg(one.curve.psi) {
-        let ends = [at([0.0, 0.0]), at(place(mirror, radius))];
-        let stroke = Stroke::new(1.0, colour.gamma_multiply(0.6));
-        shapes.extend(Shape::dashed_line(&ends, stroke, 4.0, 4.0));
+        let ends = [[0.0, 0.0], place(mirror, radius)];
+        items::dashed(transform, ends, colour, shapes);
     }
     for reading in &one.curve.readings {
         let position = at(place(reading.theta_deg, reading.value));
@@ -100,15 +99,16 @@ fn draw(
 
 /// Half circles at round values, and rays every 30 deg.
 fn grid(transform: &PlotTransform, radius: f64, stroke: Stroke, shapes: &mut Vec<Shape>) {
-    let at = |point: [f64; 2]| transform.position_from_point(&PlotPoint::new(point[0], point[1]));
+    let mut line = |points: &mut dyn Iterator<Item = [f64; 2]>| {
+        let points = points.map(|[x, y]| (x, y));
+        items::line(transform, Axis::Linear, points, stroke, shapes);
+    };
     for step in 1..=4 {
         let circle = (-90..=90).step_by(3);
-        let circle = circle.map(|deg| at(place(f64::from(deg), radius * f64::from(step) / 4.0)));
-        shapes.push(Shape::line(circle.collect(), stroke));
+        line(&mut circle.map(|deg| place(f64::from(deg), radius * f64::from(step) / 4.0)));
     }
     for deg in (-90..=90).step_by(30) {
-        let ray = [at([0.0, 0.0]), at(place(f64::from(deg), radius))];
-        shapes.push(Shape::line_segment(ray, stroke));
+        line(&mut [[0.0, 0.0], place(f64::from(deg), radius)].into_iter());
     }
 }
 

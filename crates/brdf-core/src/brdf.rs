@@ -6,7 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::Geometry;
 use crate::facet::{Ellipsoid, FacetDistribution, P_DOMAIN};
-use crate::fresnel::Dielectric;
+use crate::fresnel::{Dielectric, FresnelFactor};
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 use crate::shadowing::{Shadowing, VGroove};
 
 /// The smallest and the largest k1 of the model's domain.
@@ -166,18 +169,34 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     /// f_r in 1/sr.
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
-        // The Fresnel factor comes last: its chain of roots and divisions is the longest.
-        let early = self.facet.relative(geometry.tan2_alpha, geometry.sec_alpha)
-            * (self.k2 * FRAC_1_PI)
-            * self.shadowing.over_cosines_at(geometry);
-        early * self.fresnel.relative_at(geometry) + self.kd * FRAC_1_PI
+        let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
+        let fresnel = self
+            .fresnel
+            .quotient(geometry.cos_gamma, geometry.cos2_gamma);
+        self.with_fresnel(fresnel, psi, theta, &geometry.half())
+    }
+
+    /// The formula itself, in any kind of number, with the value of any form of the Fresnel factor:
+    /// one division.
+    #[inline]
+    pub(crate) fn with_fresnel<R: Real>(
+        &self,
+        fresnel: Quotient<R>,
+        cos_psi: R,
+        cos_theta: R,
+        half: &HalfVector<R>,
+    ) -> R {
+        let facet = self.facet.quotient(half);
+        let shadowing = self.shadowing.quotient(cos_psi, cos_theta, half);
+        let specular = (facet * shadowing * fresnel).value();
+        specular.mul_add(R::of(self.k2 * FRAC_1_PI), R::of(self.kd * FRAC_1_PI))
     }
 
     /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
         let (t, sec) = (geometry.tan2_alpha, geometry.sec_alpha);
-        let fresnel = self.fresnel.relative_at(geometry) * FRAC_1_PI;
+        let fresnel = self.relative_fresnel(geometry) * FRAC_1_PI;
         let shadowing = self.shadowing.over_cosines_at(geometry);
         let facet = self.facet.relative(t, sec);
         let mut by_k1 = self.facet.derivative_k1(t, sec) * (shadowing * fresnel);
@@ -209,7 +228,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self
                 .facet
                 .derivative_p(geometry.tan2_alpha, geometry.sec_alpha)
-            * self.fresnel.relative_at(geometry)
+            * self.relative_fresnel(geometry)
             * self.shadowing.over_cosines_at(geometry)
     }
 
@@ -217,6 +236,12 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     #[inline]
     pub fn radiant_intensity(&self, geometry: &Geometry) -> f64 {
         self.value(geometry) * geometry.cos_theta
+    }
+
+    #[inline]
+    fn relative_fresnel(&self, geometry: &Geometry) -> f64 {
+        let (c, c2) = (geometry.cos_gamma, geometry.cos2_gamma);
+        self.fresnel.quotient(c, c2).value()
     }
 
     pub(crate) fn facet(&self) -> F {
@@ -236,7 +261,8 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
 /// R0(gamma) G / (cos psi cos theta).
 #[inline]
 pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
-    fresnel.relative_at(geometry) * VGroove.over_cosines_at(geometry)
+    let factor = fresnel.quotient(geometry.cos_gamma, geometry.cos2_gamma);
+    factor.value() * VGroove.over_cosines_at(geometry)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The Fresnel factor of a dielectric facet.
 
-use crate::Geometry;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// Unpolarised Fresnel reflectance of a facet of refractive index n (real, relative to air).
 ///
@@ -55,28 +56,7 @@ impl Dielectric {
 
     /// R0(gamma) = R(gamma)/R(0), for cos gamma in (0, 1].
     pub fn relative(&self, cos_gamma: f64) -> f64 {
-        self.relative_with_square(cos_gamma, cos_gamma * cos_gamma)
-    }
-
-    /// R0(gamma) of a geometry, which has the square beside the cosine: the roots of both then run
-    /// side by side.
-    #[inline]
-    pub fn relative_at(&self, geometry: &Geometry) -> f64 {
-        self.relative_with_square(geometry.cos_gamma, geometry.cos2_gamma)
-    }
-
-    #[inline]
-    fn relative_with_square(&self, cos_gamma: f64, cos2_gamma: f64) -> f64 {
-        let Terms {
-            square,
-            numerator,
-            denominator,
-            ..
-        } = self.terms(cos_gamma, cos2_gamma);
-        let d2 = denominator * denominator;
-        // One division for all of (1 + b^2) / (g + c)^4, and it does not wait for b.
-        let reciprocal = 1.0 / (square * square * d2);
-        self.half_fourth_power * (d2 + numerator * numerator) * reciprocal
+        self.quotient(cos_gamma, cos_gamma * cos_gamma).value()
     }
 
     /// The derivative of R0(gamma) by n, for cos gamma in (0, 1] and sin^2 gamma with it.
@@ -102,28 +82,52 @@ impl Dielectric {
     }
 
     #[inline]
-    fn terms(&self, cos_gamma: f64, cos2_gamma: f64) -> Terms {
-        let g = (self.n2_minus_1 + cos2_gamma).sqrt();
-        let sum = g + cos_gamma;
+    fn terms<R: Real>(&self, cos_gamma: R, cos2_gamma: R) -> Terms<R> {
+        let n2_minus_1 = R::of(self.n2_minus_1);
+        let sum = (n2_minus_1 + cos2_gamma).sqrt() + cos_gamma;
         Terms {
             sum,
-            square: self.n2_minus_1 + 2.0 * cos_gamma * sum,
-            numerator: sum * (cos_gamma * sum - 1.0),
-            denominator: cos_gamma * self.n2_minus_1 + sum,
+            square: (cos_gamma + cos_gamma).mul_add(sum, n2_minus_1),
+            numerator: sum * cos_gamma.mul_add(sum, R::of(-1.0)),
+            denominator: cos_gamma.mul_add(n2_minus_1, sum),
+        }
+    }
+}
+
+/// A form of the Fresnel factor R0(gamma) = R(gamma)/R(0).
+pub trait FresnelFactor: Copy + Send + Sync {
+    /// R0(gamma) from cos gamma in (0, 1] and its square.
+    fn quotient<R: Real>(&self, cos_gamma: R, cos2_gamma: R) -> Quotient<R>;
+}
+
+impl FresnelFactor for Dielectric {
+    #[inline]
+    fn quotient<R: Real>(&self, cos_gamma: R, cos2_gamma: R) -> Quotient<R> {
+        let Terms {
+            square,
+            numerator,
+            denominator,
+            ..
+        } = self.terms(cos_gamma, cos2_gamma);
+        let below = square * denominator;
+        Quotient {
+            numerator: R::of(self.half_fourth_power)
+                * numerator.mul_add(numerator, denominator * denominator),
+            denominator: below * below,
         }
     }
 }
 
 /// The terms of the formula above, c being cos gamma.
-struct Terms {
+struct Terms<R> {
     /// g + c.
-    sum: f64,
+    sum: R,
     /// (g + c)^2 = n^2 - 1 + 2 c (g + c).
-    square: f64,
+    square: R,
     /// The numerator of b times g + c: (g + c)(c (g + c) - 1).
-    numerator: f64,
+    numerator: R,
     /// The denominator of b times g + c: c (n^2 - 1) + g + c.
-    denominator: f64,
+    denominator: R,
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 
-use crate::trigonometry::{exchanged_if, sin_cos_quarter, sin_eighth, sin2_cos2_of_half};
+use crate::pair::{HalfVector, Pair, TanDifference, Zenith};
+use crate::trigonometry::{exchanged_if, sin2_cos2_of_any_half};
 
 /// How far the length of a direction vector may be from 1.
 ///
@@ -59,6 +60,12 @@ pub enum GeometryError {
     /// The azimuth is not a finite number.
     #[error("azimuth phi = {0} rad: expected a finite number")]
     Azimuth(f64),
+    /// The cosine of a zenith angle is not in (0, 1].
+    #[error("cosine of a zenith angle = {0}: expected a value in (0, 1]")]
+    ZenithCosine(f64),
+    /// The cosine of the azimuth is not in [-1, 1].
+    #[error("cosine of the azimuth = {0}: expected a value in [-1, 1]")]
+    AzimuthCosine(f64),
     /// A direction vector is not of length 1.
     #[error("direction of length {0}: expected a unit vector")]
     Length(f64),
@@ -84,7 +91,7 @@ impl Geometry {
         if !phi.is_finite() {
             return Err(GeometryError::Azimuth(phi));
         }
-        let (sin2_half_phi, cos2_half_phi) = sin2_cos2_of_half(phi);
+        let (sin2_half_phi, cos2_half_phi) = sin2_cos2_of_any_half(phi);
         // (theta < 0, phi) is (|theta|, phi + pi), and that exchanges the two squares.
         let (sin2, cos2) = exchanged_if(theta < 0.0, sin2_half_phi, cos2_half_phi);
         Ok(Self::from_half_azimuth(psi, theta.abs(), sin2, cos2))
@@ -107,59 +114,70 @@ impl Geometry {
         let view = checked_direction(view)?;
         let half = source + view;
         let difference = source - view;
-        let tan2_alpha = (half.x * half.x + half.y * half.y) / (half.z * half.z);
-        Ok(Self::from_parts(
-            source.z,
-            view.z,
-            tan2_alpha,
-            0.25 * half.norm_squared(),
-            0.25 * difference.norm_squared(),
-        ))
+        let across2 = half.x * half.x + half.y * half.y;
+        let sin2_gamma = 0.25 * difference.norm_squared();
+        let length2 = 0.25 * half.norm_squared();
+        let pair = Pair::of_half(source.z, view.z, 0.25 * across2, length2);
+        Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))
+    }
+
+    /// The geometry of the cosines of psi and theta, in (0, 1], and of phi, in [-1, 1]. A cosine
+    /// says little of a small angle: where angles or directions are at hand, they are better.
+    pub fn from_cosines(cos_psi: f64, cos_theta: f64, cos_phi: f64) -> Result<Self, GeometryError> {
+        for cosine in [cos_psi, cos_theta] {
+            if !(cosine > 0.0 && cosine <= 1.0) {
+                return Err(GeometryError::ZenithCosine(cosine));
+            }
+        }
+        if !(-1.0..=1.0).contains(&cos_phi) {
+            return Err(GeometryError::AzimuthCosine(cos_phi));
+        }
+        let pair = Pair::from_cosines(cos_psi, cos_theta, cos_phi);
+        // |source - view|^2: along the normal, across it in the plane, and out of it.
+        let along = cos_psi - cos_theta;
+        let sin2 = |cosine: f64| (1.0 - cosine) * (1.0 + cosine);
+        let sines = (sin2(cos_psi) * sin2(cos_theta)).sqrt();
+        let sum2 = sin2(cos_psi) + sin2(cos_theta) + 2.0 * sines;
+        let in_plane = if along == 0.0 { 0.0 } else { (along * (cos_psi + cos_theta)).powi(2) / sum2 };
+        let across2 = in_plane + 2.0 * sines * (1.0 - cos_phi);
+        let sin2_gamma = 0.25 * (along * along + across2);
+        Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))
     }
 
     /// Both zenith angles not negative, the azimuth as sin^2(phi/2) and cos^2(phi/2).
     #[inline(always)]
     fn from_half_azimuth(psi: f64, theta: f64, sin2_half_phi: f64, cos2_half_phi: f64) -> Self {
-        let (sin_psi, cos_psi) = sin_cos_quarter(psi);
-        let (sin_theta, cos_theta) = sin_cos_quarter(theta);
-        let sin_difference = sin_eighth(0.5 * (psi - theta));
-        let sin2_difference = sin_difference * sin_difference;
-        // 1/cos^2 and tan^2 of (psi - theta)/2: the sine is at most 1/sqrt(2) there.
-        let sec2_difference = 1.0 / (1.0 - sin2_difference);
-        let tan2_difference = sin2_difference * sec2_difference;
-        let h_z = cos_psi + cos_theta;
-        let h_z2 = h_z * h_z;
-        let sines = 4.0 * sin_psi * sin_theta;
-        let out_of_plane = sines * cos2_half_phi;
+        let (source, view) = (Zenith::new(psi), Zenith::new(theta));
+        let difference = TanDifference::of(source, view);
+        let pair = Pair::from_difference(source, view, difference, cos2_half_phi);
+        let h_z = source.cos + view.cos;
+        let sines = 4.0 * source.sin * view.sin;
+        // One rounding less than from the pair.
+        let tan2_alpha = difference.tan2 + sines * cos2_half_phi / (h_z * h_z);
         // |source - view|^2, with cos psi - cos theta = -(sin psi + sin theta) tan((psi-theta)/2).
-        let sum_of_sines = sin_psi + sin_theta;
-        let across = tan2_difference * (sum_of_sines * sum_of_sines + h_z2);
-        Self::from_parts(
-            cos_psi,
-            cos_theta,
-            tan2_difference + out_of_plane / h_z2,
-            0.25 * (h_z2 * sec2_difference + out_of_plane),
-            0.25 * (across + sines * sin2_half_phi),
-        )
+        let sum_of_sines = source.sin + view.sin;
+        let across = difference.tan2 * (sum_of_sines * sum_of_sines + h_z * h_z);
+        Self::from_pair(&pair, tan2_alpha, 0.25 * (across + sines * sin2_half_phi))
     }
 
     #[inline(always)]
-    fn from_parts(
-        cos_psi: f64,
-        cos_theta: f64,
-        tan2_alpha: f64,
-        cos2_gamma: f64,
-        sin2_gamma: f64,
-    ) -> Self {
+    fn from_pair(pair: &Pair<f64>, tan2_alpha: f64, sin2_gamma: f64) -> Self {
+        let half = pair.half;
         Self {
-            cos_psi,
-            cos_theta,
-            cos_gamma: cos2_gamma.sqrt(),
-            cos2_gamma,
+            cos_psi: pair.cos_psi,
+            cos_theta: pair.cos_theta,
+            cos_gamma: half.length,
+            cos2_gamma: half.length2,
             sin2_gamma,
             tan2_alpha,
             sec_alpha: (1.0 + tan2_alpha).sqrt(),
         }
+    }
+
+    /// The same for the terms of the model.
+    #[inline(always)]
+    pub(crate) fn half(&self) -> HalfVector<f64> {
+        HalfVector::of_tilt(self.tan2_alpha, self.sec_alpha)
     }
 
     /// cos psi, the cosine of the incidence angle.

@@ -10,101 +10,117 @@
     reason = "a call costs as much as a third of the polynomial"
 )]
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
-use std::hint::select_unpredictable;
+use std::f64::consts::{FRAC_PI_4, TAU};
 
-/// What the `f64` nearest to pi/2 lacks to it; half of what that nearest to pi lacks.
-const FRAC_PI_2_REST: f64 = 6.123_233_995_736_766e-17;
+use crate::real::{Primitive, Real, horner};
+
+/// The coefficients of x^3, x^5, ... in sin x.
+const SINE: [f64; 7] = [
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5_040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+    // The next term as it is near the end of the range, where alone it matters.
+    -1.0 / 1_307_674_368_000.0 + 0.58 / 355_687_428_096_000.0,
+];
+
+/// The coefficients of x^4, x^6, ... in cos x.
+const COSINE: [f64; 7] = [
+    1.0 / 24.0,
+    -1.0 / 720.0,
+    1.0 / 40_320.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 87_178_291_200.0,
+    1.0 / 20_922_789_888_000.0,
+];
 
 /// sin x for |x| <= pi/4, to 1 ulp.
 #[inline(always)]
-pub(crate) fn sin_eighth(x: f64) -> f64 {
+pub(crate) fn sin_eighth<R: Real>(x: R) -> R {
     let z = x * x;
-    let series = [
-        -1.0 / 6.0,
-        1.0 / 120.0,
-        -1.0 / 5_040.0,
-        1.0 / 362_880.0,
-        -1.0 / 39_916_800.0,
-        1.0 / 6_227_020_800.0,
-        // The next term as it is near the end of the range, where alone it matters.
-        -1.0 / 1_307_674_368_000.0 + 0.58 / 355_687_428_096_000.0,
-    ];
-    x + x * z * polynomial(z, series)
+    (x * z).mul_add(series(z, SINE), x)
 }
 
 /// cos x for |x| <= pi/4, to 1 ulp.
 #[inline(always)]
-fn cos_eighth(x: f64) -> f64 {
+fn cos_eighth<R: Real>(x: R) -> R {
     let z = x * x;
-    let series = [
-        1.0 / 24.0,
-        -1.0 / 720.0,
-        1.0 / 40_320.0,
-        -1.0 / 3_628_800.0,
-        1.0 / 479_001_600.0,
-        -1.0 / 87_178_291_200.0,
-        1.0 / 20_922_789_888_000.0,
-    ];
-    let half = 0.5 * z;
-    let leading = 1.0 - half;
+    let one = R::of(1.0);
+    let half = R::of(0.5) * z;
+    let leading = one - half;
     // The rounding of 1 - z/2 is carried into the small terms.
-    leading + ((1.0 - leading - half) + z * z * polynomial(z, series))
+    leading + (z * z).mul_add(series(z, COSINE), (one - leading) - half)
 }
 
-/// Estrin's scheme: pairs, and pairs of pairs, so that the terms do not wait for each other.
+/// Estrin's scheme: pairs, and pairs of pairs, so that the terms do not wait for each other. Four
+/// terms are enough for single precision.
 #[inline(always)]
-fn polynomial(z: f64, [c0, c1, c2, c3, c4, c5, c6]: [f64; 7]) -> f64 {
+fn series<R: Real>(z: R, coefficients: [f64; 7]) -> R {
+    if R::Stored::SINGLE {
+        return horner(z, &coefficients[..4]);
+    }
+    let [c0, c1, c2, c3, c4, c5, c6] = coefficients.map(R::of);
     let z2 = z * z;
-    let low = (c0 + c1 * z) + (c2 + c3 * z) * z2;
-    let high = (c4 + c5 * z) + c6 * z2;
-    low + high * (z2 * z2)
+    let low = c3.mul_add(z, c2).mul_add(z2, c1.mul_add(z, c0));
+    let high = c6.mul_add(z2, c5.mul_add(z, c4));
+    high.mul_add(z2 * z2, low)
 }
 
 /// (sin x, cos x) for x in [0, pi/2], each to 1 ulp of itself: beyond pi/4 they are the cosine and
 /// sine of pi/2 - x, a difference that is exact but for the rest of pi/2.
 #[inline(always)]
-pub(crate) fn sin_cos_quarter(x: f64) -> (f64, f64) {
-    let beyond = x > FRAC_PI_4;
-    let y = select_unpredictable(beyond, (FRAC_PI_2 - x) + FRAC_PI_2_REST, x);
-    let (sin, cos) = (sin_eighth(y), cos_eighth(y));
-    exchanged_if(beyond, sin, cos)
+pub(crate) fn sin_cos_quarter<R: Real>(x: R) -> (R, R) {
+    let [right_angle, rest] = R::Stored::FRAC_PI_2.map(R::of);
+    let beyond = x > R::of(FRAC_PI_4);
+    let y = R::select(beyond, (right_angle - x) + rest, x);
+    exchanged_if(beyond, sin_eighth(y), cos_eighth(y))
 }
 
 /// (b, a) or (a, b), without a branch.
 #[inline(always)]
-pub(crate) fn exchanged_if(exchange: bool, a: f64, b: f64) -> (f64, f64) {
-    (
-        select_unpredictable(exchange, b, a),
-        select_unpredictable(exchange, a, b),
-    )
+pub(crate) fn exchanged_if<R: Real>(exchange: bool, a: R, b: R) -> (R, R) {
+    (R::select(exchange, b, a), R::select(exchange, a, b))
 }
 
-/// (sin^2(phi/2), cos^2(phi/2)) for any finite phi.
+/// (sin^2(phi/2), cos^2(phi/2)) for phi in [-2 pi, 2 pi].
 #[inline(always)]
-pub(crate) fn sin2_cos2_of_half(phi: f64) -> (f64, f64) {
-    let half = 0.5 * phi.abs();
-    if half > PI {
-        let (sin, cos) = libm::sincos(half);
-        return (sin * sin, cos * cos);
-    }
+pub(crate) fn sin2_cos2_of_half<R: Real>(phi: R) -> (R, R) {
+    let half = R::of(0.5) * phi.abs();
+    let [right_angle, rest] = R::Stored::FRAC_PI_2.map(R::of);
     // The distance to the nearest of 0, pi/2 and pi, in which the squares are symmetric.
-    let about_right_angle = half > FRAC_PI_4 && half <= 3.0 * FRAC_PI_4;
-    let from_right_angle = (half - FRAC_PI_2) - FRAC_PI_2_REST;
-    let from_straight = (half - PI) - 2.0 * FRAC_PI_2_REST;
-    let outside = select_unpredictable(half > FRAC_PI_2, from_straight, half);
-    let y = select_unpredictable(about_right_angle, from_right_angle, outside);
-    let sin = sin_eighth(y);
+    let about_right_angle = (half > R::of(FRAC_PI_4)) & (half <= R::of(3.0 * FRAC_PI_4));
+    let from_right_angle = (half - right_angle) - rest;
+    let from_straight = (half - (right_angle + right_angle)) - (rest + rest);
+    let outside = R::select(half > right_angle, from_straight, half);
+    let sin = sin_eighth(R::select(about_right_angle, from_right_angle, outside));
     let sin2 = sin * sin;
     // At most 1/2, so that 1 - sin^2 loses nothing.
-    exchanged_if(about_right_angle, sin2, 1.0 - sin2)
+    exchanged_if(about_right_angle, sin2, R::of(1.0) - sin2)
+}
+
+/// [`sin2_cos2_of_half`] of any finite phi.
+#[inline(always)]
+pub(crate) fn sin2_cos2_of_any_half(phi: f64) -> (f64, f64) {
+    if phi.abs() <= TAU {
+        return sin2_cos2_of_half(phi);
+    }
+    let (sin, cos) = libm::sincos(0.5 * phi.abs());
+    (sin * sin, cos * cos)
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, PI};
+
     use proptest::prelude::*;
 
     use super::*;
+
+    /// What the `f64` nearest to pi/2 lacks to it; half of what that nearest to pi lacks.
+    const REST: f64 = f64::FRAC_PI_2[1];
 
     /// Distance in units of the last place of the expected value.
     fn ulps(value: f64, expected: f64) -> f64 {
@@ -114,15 +130,15 @@ mod tests {
 
     #[test]
     fn the_ends_of_the_ranges_are_right() {
-        assert_eq!(sin_cos_quarter(0.0), (0.0, 1.0));
-        assert_eq!(sin_cos_quarter(FRAC_PI_2), (1.0, FRAC_PI_2_REST));
-        assert_eq!(sin2_cos2_of_half(0.0), (0.0, 1.0));
-        assert_eq!(sin2_cos2_of_half(PI).0, 1.0);
-        assert!(ulps(sin2_cos2_of_half(PI).1, FRAC_PI_2_REST.powi(2)) <= 1.0);
+        assert_eq!(sin_cos_quarter(0.0_f64), (0.0, 1.0));
+        assert_eq!(sin_cos_quarter(FRAC_PI_2), (1.0, REST));
+        assert_eq!(sin2_cos2_of_any_half(0.0), (0.0, 1.0));
+        assert_eq!(sin2_cos2_of_any_half(PI).0, 1.0);
+        assert!(ulps(sin2_cos2_of_any_half(PI).1, REST.powi(2)) <= 1.0);
         assert!(
             ulps(
-                sin2_cos2_of_half(2.0 * PI).0,
-                (2.0 * FRAC_PI_2_REST).powi(2)
+                sin2_cos2_of_any_half(2.0 * PI).0,
+                (2.0 * REST).powi(2)
             ) <= 1.0
         );
     }
@@ -139,7 +155,7 @@ mod tests {
 
         #[test]
         fn squares_agree_with_the_library_at_any_azimuth(phi in -20.0..20.0_f64) {
-            let (sin2, cos2) = sin2_cos2_of_half(phi);
+            let (sin2, cos2) = sin2_cos2_of_any_half(phi);
             let (sin, cos) = libm::sincos(0.5 * phi);
             prop_assert!(ulps(sin2, sin * sin) <= 4.0, "sin {}", phi);
             prop_assert!(ulps(cos2, cos * cos) <= 4.0, "cos {}", phi);
@@ -151,7 +167,7 @@ mod tests {
         ) {
             let offset = if sign { log_offset.exp() } else { -log_offset.exp() };
             let phi = f64::from(quarters) * PI + offset;
-            let (sin2, cos2) = sin2_cos2_of_half(phi);
+            let (sin2, cos2) = sin2_cos2_of_any_half(phi);
             let (sin, cos) = libm::sincos(0.5 * phi);
             prop_assert!(ulps(sin2, sin * sin) <= 4.0, "sin {}", phi);
             prop_assert!(ulps(cos2, cos * cos) <= 4.0, "cos {}", phi);

@@ -3,6 +3,9 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::FacetDistribution;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// The distribution of a surface with normally distributed slopes (Beckmann and Spizzichino 1963;
 /// Cook and Torrance 1982, eq. 3), its root mean square slope times sqrt(2) being the width k1:
@@ -32,9 +35,13 @@ impl FacetDistribution for Beckmann {
     }
 
     #[inline]
-    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        let sec2_alpha = sec_alpha * sec_alpha;
-        (-tan2_alpha * self.reciprocal_k1_squared).exp() * sec2_alpha * sec2_alpha
+    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+        let along2 = half.along * half.along;
+        let exponent = -half.tan2_alpha() * R::of(self.reciprocal_k1_squared);
+        Quotient {
+            numerator: exponent.exp() * (half.length2 * half.length2),
+            denominator: along2 * along2,
+        }
     }
 
     /// 2 tan^2 alpha / k1^3 times the value.

@@ -3,6 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::FacetDistribution;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// The paper's facet distribution: in polar coordinates an ellipsoid of revolution that touches
 /// the surface at the origin, k1 being its transverse axis over its axis along the normal.
@@ -38,8 +41,13 @@ impl FacetDistribution for Ellipsoid {
     }
 
     #[inline]
-    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        self.k1_squared * sec_alpha / (tan2_alpha + self.k1_squared)
+    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+        let k1_squared = R::of(self.k1_squared);
+        let along2 = half.along * half.along;
+        Quotient {
+            numerator: k1_squared * (half.along * half.length),
+            denominator: k1_squared.mul_add(along2, half.across2),
+        }
     }
 
     /// 2 k1 sec alpha tan^2 alpha / (tan^2 alpha + k1^2)^2.

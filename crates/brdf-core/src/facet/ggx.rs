@@ -3,6 +3,9 @@
 use std::f64::consts::FRAC_1_PI;
 
 use super::FacetDistribution;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33),
 /// its roughness alpha_g being the width k1:
@@ -35,9 +38,15 @@ impl FacetDistribution for Ggx {
     }
 
     #[inline]
-    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        let base = self.k1_squared * (sec_alpha * sec_alpha) / (tan2_alpha + self.k1_squared);
-        base * base
+    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+        let k1_squared = R::of(self.k1_squared);
+        let along2 = half.along * half.along;
+        let above = k1_squared * half.length2;
+        let below = k1_squared.mul_add(along2, half.across2);
+        Quotient {
+            numerator: above * above,
+            denominator: below * below,
+        }
     }
 
     /// 4 tan^2 alpha / (k1 (tan^2 alpha + k1^2)) times the value.

@@ -13,14 +13,25 @@ pub use ellipsoid::Ellipsoid;
 pub use ggx::Ggx;
 pub use power::{P_DOMAIN, Power};
 
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
+
 /// A distribution of facet normals over their tilt alpha, as a function of tan^2 alpha and
 /// sec alpha, which a [`Geometry`](crate::Geometry) has without a loss of digits.
-pub trait FacetDistribution: Copy {
+pub trait FacetDistribution: Copy + Send + Sync {
     /// The width k1.
     fn k1(&self) -> f64;
 
     /// f(alpha)/f(0), dimensionless: 1 at alpha = 0.
-    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64;
+    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R>;
+
+    /// f(alpha)/f(0) of one tilt.
+    #[inline]
+    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        let half = HalfVector::of_tilt(tan2_alpha, sec_alpha);
+        self.quotient(&half).value()
+    }
 
     /// The derivative of f(alpha)/f(0) by k1.
     fn derivative_k1(&self, tan2_alpha: f64, sec_alpha: f64) -> f64;

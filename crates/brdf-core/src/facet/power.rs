@@ -3,6 +3,9 @@
 use std::f64::consts::TAU;
 
 use super::FacetDistribution;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 use crate::quadrature::integrate;
 
 /// The smallest and the largest exponent p. At the larger, the widest distribution, which rises
@@ -42,14 +45,13 @@ impl Power {
     /// ln(k1^2 / (sin^2 alpha + k1^2 cos^2 alpha)), without a loss of digits next to the peak:
     /// the fraction is 1 + (k1^2 - 1) tan^2 alpha / (tan^2 alpha + k1^2).
     #[inline]
-    fn logarithm(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        let denominator = tan2_alpha + self.k1_squared;
-        let excess = (self.k1_squared - 1.0) * (tan2_alpha / denominator);
-        if excess.abs() < 0.5 {
-            excess.ln_1p()
-        } else {
-            (self.k1_squared * (sec_alpha * sec_alpha) / denominator).ln()
-        }
+    fn logarithm<R: Real>(&self, half: &HalfVector<R>) -> R {
+        let k1_squared = R::of(self.k1_squared);
+        let denominator = k1_squared.mul_add(half.along * half.along, half.across2);
+        let excess = R::of(self.k1_squared - 1.0) * (half.across2 / denominator);
+        let fraction = k1_squared * half.length2 / denominator;
+        let next_to_the_peak = excess.abs() < R::of(0.5);
+        R::select(next_to_the_peak, excess.ln_1p(), fraction.ln())
     }
 }
 
@@ -59,8 +61,11 @@ impl FacetDistribution for Power {
     }
 
     #[inline]
-    fn relative(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        (self.p * self.logarithm(tan2_alpha, sec_alpha)).exp() / sec_alpha
+    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+        Quotient {
+            numerator: (R::of(self.p) * self.logarithm(half)).exp() * half.along,
+            denominator: half.length,
+        }
     }
 
     /// 2 p tan^2 alpha / (k1 (tan^2 alpha + k1^2)) times the value.
@@ -73,7 +78,8 @@ impl FacetDistribution for Power {
     /// The logarithm of the fraction times the value.
     #[inline]
     fn derivative_p(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        self.logarithm(tan2_alpha, sec_alpha) * self.relative(tan2_alpha, sec_alpha)
+        let half = HalfVector::of_tilt(tan2_alpha, sec_alpha);
+        self.logarithm(&half) * self.quotient(&half).value()
     }
 
     /// The normalisation integral, 2 pi times that of f(alpha)/f(0) cos alpha sin alpha d alpha, by

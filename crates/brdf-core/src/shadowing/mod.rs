@@ -7,14 +7,25 @@ pub use smith::Smith;
 pub use v_groove::VGroove;
 
 use crate::Geometry;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// The fraction of a facet that both source and view see, G in [0, 1].
-pub trait Shadowing: Copy {
+pub trait Shadowing: Copy + Send + Sync {
     /// Whether G depends on the width k1 of the facet distribution.
     const DEPENDS_ON_WIDTH: bool;
 
     /// G / (cos psi cos theta), which stays finite where one of the two angles goes to 90 deg.
-    fn over_cosines(&self, cos_psi: f64, cos_theta: f64, tan2_alpha: f64) -> f64;
+    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Quotient<R>;
+
+    /// G / (cos psi cos theta) of one pair of directions.
+    #[inline]
+    fn over_cosines(&self, cos_psi: f64, cos_theta: f64, tan2_alpha: f64) -> f64 {
+        // The length itself is not needed.
+        let half = HalfVector::of_tilt(tan2_alpha, f64::NAN);
+        self.quotient(cos_psi, cos_theta, &half).value()
+    }
 
     /// The derivative of G / (cos psi cos theta) by k1.
     fn over_cosines_derivative_k1(&self, _cos_psi: f64, _cos_theta: f64, _tan2_alpha: f64) -> f64 {

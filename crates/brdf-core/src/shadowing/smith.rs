@@ -1,6 +1,9 @@
 //! Smith's shadowing for the GGX distribution, source and view independent of each other.
 
 use super::Shadowing;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// The separable Smith factor with the GGX form of each side (Walter et al., EGSR 2007, eq. 34),
 /// its roughness being the width k1 of the facet distribution:
@@ -29,9 +32,10 @@ impl Smith {
 
     /// k1^2 sin^2 x and sqrt(cos^2 x + k1^2 sin^2 x).
     #[inline]
-    fn rough_and_root(&self, cosine: f64) -> (f64, f64) {
-        let rough = self.k1_squared * ((1.0 - cosine) * (1.0 + cosine));
-        (rough, (cosine * cosine + rough).sqrt())
+    fn rough_and_root<R: Real>(&self, cosine: R) -> (R, R) {
+        let one = R::of(1.0);
+        let rough = R::of(self.k1_squared) * ((one - cosine) * (one + cosine));
+        (rough, cosine.mul_add(cosine, rough).sqrt())
     }
 }
 
@@ -39,20 +43,23 @@ impl Shadowing for Smith {
     const DEPENDS_ON_WIDTH: bool = true;
 
     #[inline]
-    fn over_cosines(&self, cos_psi: f64, cos_theta: f64, _tan2_alpha: f64) -> f64 {
+    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, _: &HalfVector<R>) -> Quotient<R> {
         let (_, source) = self.rough_and_root(cos_psi);
         let (_, view) = self.rough_and_root(cos_theta);
-        4.0 / ((cos_psi + source) * (cos_theta + view))
+        Quotient {
+            numerator: R::of(4.0),
+            denominator: (cos_psi + source) * (cos_theta + view),
+        }
     }
 
     #[inline]
-    fn over_cosines_derivative_k1(&self, cos_psi: f64, cos_theta: f64, _tan2_alpha: f64) -> f64 {
+    fn over_cosines_derivative_k1(&self, cos_psi: f64, cos_theta: f64, tan2_alpha: f64) -> f64 {
         // d ln(cos + root) / d ln k1 = rough / (root (cos + root)).
         let slope = |cosine: f64| {
             let (rough, root) = self.rough_and_root(cosine);
             rough / (root * (cosine + root))
         };
-        let value = self.over_cosines(cos_psi, cos_theta, 0.0);
+        let value = self.over_cosines(cos_psi, cos_theta, tan2_alpha);
         -(slope(cos_psi) + slope(cos_theta)) * value / self.k1
     }
 }

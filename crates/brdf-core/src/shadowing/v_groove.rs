@@ -1,6 +1,9 @@
 //! The V-groove factor of Torrance and Sparrow.
 
 use super::Shadowing;
+use crate::pair::HalfVector;
+use crate::quotient::Quotient;
+use crate::real::Real;
 
 /// The V-groove factor of Torrance and Sparrow (JOSA 57, 1105, 1967), which the paper takes:
 ///
@@ -22,10 +25,15 @@ impl Shadowing for VGroove {
     const DEPENDS_ON_WIDTH: bool = false;
 
     #[inline]
-    fn over_cosines(&self, cos_psi: f64, cos_theta: f64, tan2_alpha: f64) -> f64 {
+    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Quotient<R> {
         let h_z = cos_psi + cos_theta;
-        let blocked = 0.25 * h_z * (1.0 + tan2_alpha) * cos_psi.max(cos_theta);
-        1.0 / (cos_psi * cos_theta).max(blocked)
+        let along2 = half.along * half.along;
+        let open = along2 * (cos_psi * cos_theta);
+        let blocked = R::of(0.25) * h_z * half.length2 * cos_psi.max(cos_theta);
+        Quotient {
+            numerator: along2,
+            denominator: open.max(blocked),
+        }
     }
 }
 

@@ -1,0 +1,74 @@
+//! Numbers whose multiplications and additions are one operation.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Primitive, Real};
+
+/// A number of which [`mul_add`](Real::mul_add) has one rounding: for processors that do so in one
+/// operation, elsewhere it would be a slow call.
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
+pub struct Fused<T>(T);
+
+impl<T: Primitive> Real for Fused<T> {
+    type Stored = T;
+
+    #[inline(always)]
+    fn load(stored: T) -> Self {
+        Self(stored)
+    }
+
+    #[inline(always)]
+    fn store(self) -> T {
+        self.0
+    }
+
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self(self.0.fused_mul_add(a.0, b.0))
+    }
+}
+
+impl<T: Primitive> Add for Fused<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl<T: Primitive> Sub for Fused<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl<T: Primitive> Mul for Fused<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+}
+
+impl<T: Primitive> Div for Fused<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(self.0 / other.0)
+    }
+}
+
+impl<T: Primitive> Neg for Fused<T> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}

@@ -252,6 +252,10 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         self.shadowing
     }
 
+    pub(crate) fn set_kd(&mut self, kd: f64) {
+        self.kd = kd;
+    }
+
     pub(crate) fn fresnel(&self) -> Dielectric {
         self.fresnel
     }

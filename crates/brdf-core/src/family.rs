@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
 use crate::facet::{Beckmann, Ellipsoid, Ggx, P_DOMAIN, Power};
+use crate::fresnel::Dielectric;
 use crate::shadowing::{Smith, VGroove};
 use crate::{Geometry, GeometryError};
 
@@ -101,6 +102,8 @@ macro_rules! each {
     };
 }
 
+pub(crate) use each;
+
 impl AnyBrdf {
     /// The BRDF of a family with its parameters.
     ///
@@ -129,6 +132,22 @@ impl AnyBrdf {
                 })?)
             }
         })
+    }
+
+    /// The parameters k2, kD and k1.
+    pub fn parameters(&self) -> Parameters {
+        each!(self, brdf => brdf.parameters())
+    }
+
+    /// The Fresnel factor.
+    pub fn fresnel(&self) -> Dielectric {
+        each!(self, brdf => brdf.fresnel())
+    }
+
+    /// The same BRDF with another diffuse weight kD >= 0.
+    pub(crate) fn with_kd(mut self, kd: f64) -> Self {
+        each!(&mut self, brdf => brdf.set_kd(kd));
+        self
     }
 
     /// f_r in 1/sr.

@@ -55,6 +55,7 @@
 //! rounded in one way only: they have the same digits on every machine.
 
 pub mod brdf;
+pub mod evaluator;
 pub mod facet;
 pub mod family;
 pub mod fresnel;

@@ -12,7 +12,7 @@ use crate::real::Real;
 ///
 /// ```text
 /// f(alpha) / f(0) = k1^2 cos alpha / (1 + (k1^2 - 1) cos^2 alpha)
-///                 = k1^2 sec alpha / (tan^2 alpha + k1^2)
+///                 = sec alpha / (tan^2 alpha / k1^2 + 1)
 /// ```
 ///
 /// A small k1 is a narrow lobe, k1 = 1 the sphere cos alpha. The second form has no difference
@@ -21,6 +21,7 @@ use crate::real::Real;
 pub struct Ellipsoid {
     k1: f64,
     k1_squared: f64,
+    reciprocal_k1_squared: f64,
 }
 
 impl Ellipsoid {
@@ -31,6 +32,7 @@ impl Ellipsoid {
         Self {
             k1,
             k1_squared: k1 * k1,
+            reciprocal_k1_squared: 1.0 / (k1 * k1),
         }
     }
 }
@@ -42,11 +44,12 @@ impl FacetDistribution for Ellipsoid {
 
     #[inline]
     fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
-        let k1_squared = R::of(self.k1_squared);
         let along2 = half.along * half.along;
         Quotient {
-            numerator: k1_squared * (half.along * half.length),
-            denominator: k1_squared.mul_add(along2, half.across2),
+            numerator: half.along * half.length,
+            denominator: half
+                .across2
+                .mul_add(R::of(self.reciprocal_k1_squared), along2),
         }
     }
 

@@ -123,10 +123,10 @@ impl<T: Primitive> Real for T {
     }
 }
 
-/// The polynomial of the coefficients, lowest first, by Horner's scheme.
+/// The polynomial of the coefficients, lowest first, by Horner's scheme. There is at least one.
 #[inline(always)]
 pub(crate) fn horner<R: Real>(x: R, coefficients: &[f64]) -> R {
-    let highest_first = coefficients.iter().rev();
-    let first = R::of(0.0);
-    highest_first.fold(first, |sum, &c| sum.mul_add(x, R::of(c)))
+    let highest = R::of(coefficients[coefficients.len() - 1]);
+    let others = coefficients[..coefficients.len() - 1].iter().rev();
+    others.fold(highest, |sum, &c| sum.mul_add(x, R::of(c)))
 }

@@ -82,10 +82,10 @@ impl Evaluator for Exact {
 impl<F: FacetDistribution, S: Shadowing> Formula for MicrofacetBrdf<F, S> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> R {
+    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
         let half = &pair.half;
         let fresnel = self.fresnel().quotient(half.length, half.length2);
         let value = self.with_fresnel(fresnel, pair.cos_psi, pair.cos_theta, half);
-        pair.if_above_surface(value)
+        [pair.if_above_surface(value)]
     }
 }

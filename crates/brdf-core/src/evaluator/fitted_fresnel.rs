@@ -77,11 +77,11 @@ impl<F: FacetDistribution, S: Shadowing, X: FresnelFactor> Formula
 {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> R {
+    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
         let half = &pair.half;
         let fresnel = self.fresnel.quotient(half.length, half.length2);
         let (psi, theta) = (pair.cos_psi, pair.cos_theta);
-        pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))
+        [pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))]
     }
 }
 

@@ -24,8 +24,8 @@ impl Lambertian {
 impl Formula for Lambertian {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> R {
-        pair.if_above_surface(R::of(self.kd * FRAC_1_PI))
+    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
+        [pair.if_above_surface(R::of(self.kd * FRAC_1_PI))]
     }
 }
 

@@ -8,7 +8,7 @@
 //! | [`FittedFresnel`] | `f32`, the Fresnel factor a polynomial in cos gamma with a known error | none | the same, a little faster |
 //! | [`Lambertian`] | a constant | none | a surface, or a range of angles, without a specular part to speak of |
 //! | [`SpecularOnly`] | `f32` without the Lambertian part | none | where that is not to be seen |
-//! | [`SpecularTable`] | `f32`, a table over alpha and gamma | some KiB | processors whose divisions and roots are slow |
+//! | [`IsotropicTable`] | `f32`, a table over alpha and gamma | some KiB | processors whose divisions and roots are slow |
 //! | [`IncidenceTable`] | `f32`, a table over signed theta | some KiB | one incidence, in plane |
 //! | [`InPlaneTable`] | `f32`, a table over psi and signed theta | MiB | in plane |
 //!
@@ -20,6 +20,7 @@ mod fitted_fresnel;
 mod lambertian;
 mod points;
 mod single;
+mod table;
 pub(crate) mod vector;
 
 use std::fmt::Debug;
@@ -29,6 +30,7 @@ pub use fitted_fresnel::FittedFresnel;
 pub use lambertian::Lambertian;
 pub use points::Points;
 pub use single::{Single, SpecularOnly};
+pub use table::{InPlaneTable, IncidenceTable, IsotropicTable, TableError};
 
 /// Arrays of different lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

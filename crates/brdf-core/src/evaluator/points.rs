@@ -113,8 +113,20 @@ impl<'a, T: Primitive> Points<'a, T> {
     }
 }
 
-/// How many points are converted at once: their arrays stay in the nearest cache.
-const BLOCK: usize = 512;
+/// How many points are taken at once where that needs arrays: they stay in the nearest cache.
+pub(crate) const BLOCK: usize = 512;
+
+/// Works on a block of points at a time.
+pub(crate) fn in_blocks<T: Primitive>(
+    points: &Points<T>,
+    out: &mut [T],
+    mut work: impl FnMut(&Points<T>, &mut [T]),
+) {
+    for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+        let from = block * BLOCK;
+        work(&points.part(from..from + out.len()), out);
+    }
+}
 
 /// Evaluates points of one precision by an evaluator of the other, block by block.
 pub(crate) fn converted<T: Primitive, U: Primitive>(
@@ -124,17 +136,16 @@ pub(crate) fn converted<T: Primitive, U: Primitive>(
 ) {
     let mut arrays = [[U::default(); BLOCK]; 6];
     let mut values = [U::default(); BLOCK];
-    for (block, out) in out.chunks_mut(BLOCK).enumerate() {
-        let part = points.part(block * BLOCK..block * BLOCK + out.len());
+    in_blocks(points, out, |points, out| {
         let mut free = arrays.iter_mut();
-        let narrow = part.with(|array| match free.next() {
+        let other = points.with(|array| match free.next() {
             Some(to) => convert(array, to),
             None => &[],
         });
         let values = &mut values[..out.len()];
-        evaluate(&narrow, values);
+        evaluate(&other, values);
         convert(values, out);
-    }
+    });
 }
 
 fn convert<'b, T: Primitive, U: Primitive>(from: &[T], to: &'b mut [U]) -> &'b [U] {

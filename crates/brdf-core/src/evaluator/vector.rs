@@ -6,7 +6,9 @@
 
 #![expect(
     clippy::inline_always,
-    reason = "what is not inlined is not compiled for the processor at hand"
+    clippy::needless_range_loop,
+    reason = "what is not inlined is not compiled for the processor at hand, and over iterators the \
+              last points are not done in vectors"
 )]
 
 use std::sync::LazyLock;
@@ -30,56 +32,104 @@ const PIECE: usize = 1 << 13;
 /// A formula of a pair of directions.
 ///
 /// It is copied into the loop: what is behind a reference would be read again at each point.
-pub(crate) trait Formula: Copy + Send + Sync {
-    /// Its value in any kind of number.
-    fn at<R: Real>(&self, pair: &Pair<R>) -> R;
+pub(crate) trait Formula<const N: usize = 1>: Copy + Send + Sync {
+    /// Its values in any kind of number.
+    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; N];
 }
 
 /// A function of an index into arrays.
-pub(crate) trait Indexed<T: Primitive>: Copy {
+trait Indexed<T: Primitive, const N: usize>: Copy {
     /// The same for the indices below n, which all arrays have. Said within the loop's own function,
     /// it frees the loop from looking at the lengths of the arrays again.
     fn below(self, n: usize) -> Self;
 
-    fn at<R: Real<Stored = T>>(&self, index: usize) -> R;
+    fn at<R: Real<Stored = T>>(&self, index: usize) -> [R; N];
 }
 
 /// What the processor can do, asked once.
 static PROCESSOR: LazyLock<Arch> = LazyLock::new(Arch::new);
 
-/// out[i] = f(i) for all i, in vectors.
-pub(crate) fn fill<T: Primitive>(f: impl Indexed<T>, out: &mut [T]) {
+/// Array k of out gets value k of f at each index, in vectors.
+fn fill<T: Primitive, const N: usize>(f: impl Indexed<T, N>, out: [&mut [T]; N]) {
     let arch = *PROCESSOR;
     if matches!(arch, Arch::Scalar) {
-        Loop::<_, _, false> { f, out }.run();
+        Loop::<_, _, N, false> { f, out }.run();
     } else {
-        arch.dispatch(Loop::<_, _, true> { f, out });
+        arch.dispatch(Loop::<_, _, N, true> { f, out });
     }
 }
 
 /// The loop of [`fill`]; FUSED where the processor multiplies and adds at once.
-struct Loop<'a, F, T, const FUSED: bool> {
+struct Loop<'a, F, T, const N: usize, const FUSED: bool> {
     f: F,
-    out: &'a mut [T],
+    out: [&'a mut [T]; N],
 }
 
-impl<T: Primitive, F: Indexed<T>, const FUSED: bool> Loop<'_, F, T, FUSED> {
+impl<T, F, const N: usize, const FUSED: bool> Loop<'_, F, T, N, FUSED>
+where
+    T: Primitive,
+    F: Indexed<T, N>,
+{
     #[inline(always)]
     fn run(self) {
-        let n = self.out.len();
+        let n = self.out[0].len();
         let f = self.f.below(n);
-        // Over an iterator, the last points would not be done in vectors.
-        for i in 0..n {
-            self.out[i] = if FUSED {
-                f.at::<Fused<T>>(i).store()
-            } else {
-                f.at::<T>(i)
-            };
+        let out = self.out.map(|out| &mut out[..n]);
+        if N == 1 {
+            for i in 0..n {
+                out[0][i] = at::<_, _, N, FUSED>(&f, i)[0];
+            }
+        } else {
+            in_columns::<_, _, N, FUSED>(&f, out);
         }
     }
 }
 
-impl<T: Primitive, F: Indexed<T>, const FUSED: bool> WithSimd for Loop<'_, F, T, FUSED> {
+#[inline(always)]
+fn at<T, F, const N: usize, const FUSED: bool>(f: &F, i: usize) -> [T; N]
+where
+    T: Primitive,
+    F: Indexed<T, N>,
+{
+    if FUSED {
+        f.at::<Fused<T>>(i).map(Real::store)
+    } else {
+        f.at::<T>(i)
+    }
+}
+
+/// Several values a point, by way of arrays of its own: of several that are handed in, the compiler
+/// would have to find out first that they do not overlap.
+#[inline(always)]
+fn in_columns<T, F, const N: usize, const FUSED: bool>(f: &F, mut out: [&mut [T]; N])
+where
+    T: Primitive,
+    F: Indexed<T, N>,
+{
+    const LENGTH: usize = 64;
+    let n = out[0].len();
+    let mut from = 0;
+    while from < n {
+        let length = LENGTH.min(n - from);
+        let mut columns = [[T::default(); LENGTH]; N];
+        for i in 0..length {
+            let values = at::<_, _, N, FUSED>(f, from + i);
+            for k in 0..N {
+                columns[k][i] = values[k];
+            }
+        }
+        for (out, column) in out.iter_mut().zip(&columns) {
+            out[from..from + length].copy_from_slice(&column[..length]);
+        }
+        from += length;
+    }
+}
+
+impl<T, F, const N: usize, const FUSED: bool> WithSimd for Loop<'_, F, T, N, FUSED>
+where
+    T: Primitive,
+    F: Indexed<T, N>,
+{
     type Output = ();
 
     #[inline(always)]
@@ -113,8 +163,17 @@ pub(crate) fn rounded<T: Primitive, U: Primitive>(
     native(points, out, |points, out| converted(points, out, &work))
 }
 
-/// The formula at the points. The arrays have one length.
+/// The formula at the points. All arrays have one length.
 pub(crate) fn evaluate<T: Primitive>(formula: impl Formula, points: &Points<T>, out: &mut [T]) {
+    evaluate_all(formula, points, [out]);
+}
+
+/// The same for a formula of several values, an array for each.
+pub(crate) fn evaluate_all<T: Primitive, const N: usize>(
+    formula: impl Formula<N>,
+    points: &Points<T>,
+    out: [&mut [T]; N],
+) {
     match *points {
         Points::Cosines { psi, theta, phi } => {
             let cosines = [psi, theta, phi];
@@ -146,7 +205,7 @@ struct Cosines<'a, K, T> {
     cosines: [&'a [T]; 3],
 }
 
-impl<K: Formula, T: Primitive> Indexed<T> for Cosines<'_, K, T> {
+impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Cosines<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -156,7 +215,7 @@ impl<K: Formula, T: Primitive> Indexed<T> for Cosines<'_, K, T> {
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; N] {
         let [psi, theta, phi] = self.cosines;
         let (psi, theta, phi) = (R::load(psi[i]), R::load(theta[i]), R::load(phi[i]));
         self.formula.at(&Pair::from_cosines(psi, theta, phi))
@@ -169,7 +228,7 @@ struct Angles<'a, K, T> {
     angles: [&'a [T]; 3],
 }
 
-impl<K: Formula, T: Primitive> Indexed<T> for Angles<'_, K, T> {
+impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Angles<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -179,7 +238,7 @@ impl<K: Formula, T: Primitive> Indexed<T> for Angles<'_, K, T> {
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; N] {
         let [psi, theta, phi] = self.angles;
         let (psi, theta, phi) = (R::load(psi[i]), R::load(theta[i]), R::load(phi[i]));
         self.formula.at(&Pair::from_angles(psi, theta, phi))
@@ -193,7 +252,7 @@ struct Directions<'a, K, T> {
     view: [&'a [T]; 3],
 }
 
-impl<K: Formula, T: Primitive> Indexed<T> for Directions<'_, K, T> {
+impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Directions<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -204,7 +263,7 @@ impl<K: Formula, T: Primitive> Indexed<T> for Directions<'_, K, T> {
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; N] {
         let source = self.source.map(|array| R::load(array[i]));
         let view = self.view.map(|array| R::load(array[i]));
         self.formula.at(&Pair::from_directions(source, view))
@@ -212,16 +271,17 @@ impl<K: Formula, T: Primitive> Indexed<T> for Directions<'_, K, T> {
 }
 
 /// Azimuths beyond a whole turn are taken one by one, with the library's sine.
-fn far_angles<T: Primitive>(formula: impl Formula, [psi, theta, phi]: [&[T]; 3], out: &mut [T]) {
-    for (i, out) in out.iter_mut().enumerate() {
-        let (sin2, cos2) = sin2_cos2_of_any_half(phi[i].widen());
-        let backward = theta[i] < T::narrow(0.0);
-        let cos2_half_phi = T::narrow(if backward { sin2 } else { cos2 });
-        let (source, view) = (
-            Zenith::checked(psi[i]),
-            Zenith::checked(theta[i].magnitude()),
-        );
-        *out = formula.at(&Pair::from_zeniths(source, view, cos2_half_phi));
+fn far_angles<T: Primitive, const N: usize>(
+    formula: impl Formula<N>,
+    [psi, theta, phi]: [&[T]; 3],
+    mut out: [&mut [T]; N],
+) {
+    for i in 0..psi.len() {
+        let view = View::new(theta[i], phi[i]);
+        let pair = Pair::from_zeniths(Zenith::checked(psi[i]), view.zenith, view.cos2_half_phi);
+        for (out, value) in out.iter_mut().zip(formula.at(&pair)) {
+            out[i] = value;
+        }
     }
 }
 
@@ -250,7 +310,7 @@ pub(crate) fn grid<T: Primitive>(
             cos: &views.cos,
             cos2_half_phi: &views.cos2_half_phi,
         };
-        fill(row, out);
+        fill(row, [out]);
     };
     let (columns, count) = (theta.len().max(1), out.len());
     if count < PARALLEL_FROM {
@@ -310,7 +370,7 @@ struct Row<'a, K, T> {
     cos2_half_phi: &'a [T],
 }
 
-impl<K: Formula, T: Primitive> Indexed<T> for Row<'_, K, T> {
+impl<K: Formula, T: Primitive> Indexed<T, 1> for Row<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -323,7 +383,7 @@ impl<K: Formula, T: Primitive> Indexed<T> for Row<'_, K, T> {
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; 1] {
         let load = |zenith: Zenith<T>| Zenith {
             angle: R::load(zenith.angle),
             sin: R::load(zenith.sin),

@@ -41,6 +41,11 @@ pub trait FacetDistribution: Copy + Send + Sync {
         0.0
     }
 
+    /// The exponent p; 1 for a distribution without one.
+    fn p(&self) -> f64 {
+        1.0
+    }
+
     /// f(0) in 1/sr, from the normalisation: the integral of f(alpha) cos alpha over the
     /// hemisphere of facet normals is 1.
     fn peak_density(&self) -> f64;

@@ -37,11 +37,6 @@ impl Power {
         }
     }
 
-    /// The exponent p.
-    pub fn p(&self) -> f64 {
-        self.p
-    }
-
     /// ln(k1^2 / (sin^2 alpha + k1^2 cos^2 alpha)), without a loss of digits next to the peak:
     /// the fraction is 1 + (k1^2 - 1) tan^2 alpha / (tan^2 alpha + k1^2).
     #[inline]
@@ -58,6 +53,10 @@ impl Power {
 impl FacetDistribution for Power {
     fn k1(&self) -> f64 {
         self.k1
+    }
+
+    fn p(&self) -> f64 {
+        self.p
     }
 
     #[inline]

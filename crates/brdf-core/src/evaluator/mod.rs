@@ -31,6 +31,8 @@ pub use lambertian::Lambertian;
 pub use points::Points;
 pub use single::{Single, SpecularOnly};
 pub use table::{InPlaneTable, IncidenceTable, IsotropicTable, TableError};
+pub use vector::PARALLEL_FROM;
+pub use vector::vector_unit;
 
 /// Arrays of different lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

@@ -30,9 +30,9 @@ mod probe;
 
 use serde::{Deserialize, Serialize};
 
-pub use cost::{Cost, cost};
+pub use cost::{cost, cost_of_single_values};
 pub use domain::{Azimuth, Domain, DomainError};
-pub use plan::{Candidate, Plan, PlanError, Refusal};
+pub use plan::{Candidate, Plan, PlanError, Refusal, Survey};
 pub(crate) use probe::worst_error;
 pub use probe::{Errors, Probe};
 

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{Azimuth, Cost, Errors, Probe, Scene, cost};
+use super::{Azimuth, Errors, Probe, Scene, cost};
 use crate::AnyBrdf;
 use crate::evaluator::{
     Evaluator, Exact, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
@@ -24,6 +24,9 @@ const PART_OF_TOLERANCE: f64 = 0.7;
 /// What a table is built to.
 const TABLE_PART: f64 = 0.5;
 
+/// Points by which the cost on all cores is measured: too many for the caches.
+const TIMED_ON_ALL: usize = 1 << 20;
+
 /// What the polynomial of the Fresnel factor may take of the tolerance.
 const FRESNEL_PART: f64 = 0.4;
 
@@ -38,8 +41,10 @@ pub struct Candidate {
     pub name: &'static str,
     /// What it errs by over the domain, where it could be made.
     pub errors: Option<Errors>,
-    /// What an evaluation costs on one core.
-    pub cost: Option<Cost>,
+    /// What an evaluation costs by one thread, in nanoseconds, with arrays in the caches.
+    pub nanoseconds: Option<f64>,
+    /// What it costs by all threads, with arrays in memory; measured in a [`Survey`] only.
+    pub nanoseconds_all_threads: Option<f64>,
     /// What it cost to be made, in seconds.
     pub build_seconds: f64,
     /// Its memory, in bytes.
@@ -115,15 +120,40 @@ impl Plan {
     ///
     /// Errors: none is within the tolerance.
     pub fn new(brdf: &AnyBrdf, scene: &Scene) -> Result<Self, PlanError> {
-        let mut trial = Trial::new(brdf, scene);
+        let mut trial = Trial::new(brdf, scene, None);
         trial.formulas();
         trial.tables();
-        trial.decide()
+        trial.decide().1
     }
 
     /// What was measured of the evaluator that was taken.
     pub fn chosen(&self) -> Option<&Candidate> {
         self.candidates.iter().find(|c| c.refusal.is_none())
+    }
+}
+
+/// All that can be measured of the evaluators for a scene: of those too that a [`Plan`] does not try.
+#[derive(Debug)]
+pub struct Survey {
+    /// All evaluators.
+    pub candidates: Vec<Candidate>,
+    /// What would be chosen.
+    pub chosen: Result<&'static str, PlanError>,
+}
+
+impl Survey {
+    /// Makes and measures all evaluators of a BRDF for a scene, by one thread and by all of the
+    /// current rayon pool. Takes a second or so.
+    pub fn new(brdf: &AnyBrdf, scene: &Scene) -> Self {
+        let many = Probe::new(brdf, &scene.domain, scene.coordinates, TIMED_ON_ALL, 2);
+        let mut trial = Trial::new(brdf, scene, Some(many));
+        trial.formulas();
+        trial.tables();
+        let (candidates, plan) = trial.decide();
+        Self {
+            candidates,
+            chosen: plan.map(|plan| plan.evaluator.name()),
+        }
     }
 }
 
@@ -135,17 +165,20 @@ struct Trial<'a> {
     scene: &'a Scene,
     probe: Probe,
     timed: Probe,
+    /// For the cost on all cores, where that is asked for: then every evaluator is tried.
+    many: Option<Probe>,
     tried: Vec<Tried>,
 }
 
 impl<'a> Trial<'a> {
-    fn new(brdf: &'a AnyBrdf, scene: &'a Scene) -> Self {
+    fn new(brdf: &'a AnyBrdf, scene: &'a Scene, many: Option<Probe>) -> Self {
         let probe = |count| Probe::new(brdf, &scene.domain, scene.coordinates, count, 1);
         Self {
             brdf,
             scene,
             probe: probe(PROBED),
             timed: probe(TIMED),
+            many,
             tried: Vec::new(),
         }
     }
@@ -170,7 +203,8 @@ impl<'a> Trial<'a> {
         let tolerance = TABLE_PART * self.scene.tolerance;
         let limit = self.scene.memory_limit;
         let in_plane = domain.azimuth() == Azimuth::InPlane;
-        let worth = self.least_cost() * self.scene.evaluations > WORTH_A_TABLE;
+        let all_evaluations = self.least_cost() * self.scene.evaluations;
+        let worth = self.many.is_some() || all_evaluations > WORTH_A_TABLE;
         let fit = move |fits: bool, words| match (worth, fits) {
             (_, false) => Err(Refusal::Unfit(words)),
             (false, _) => Err(Refusal::Making),
@@ -222,7 +256,8 @@ impl<'a> Trial<'a> {
         let mut candidate = Candidate {
             name,
             errors: None,
-            cost: None,
+            nanoseconds: None,
+            nanoseconds_all_threads: None,
             build_seconds: start.elapsed().as_secs_f64(),
             bytes: 0,
             refusal: None,
@@ -230,7 +265,9 @@ impl<'a> Trial<'a> {
         let evaluator = match made {
             Ok(evaluator) => {
                 candidate.errors = Some(self.probe.errors(&evaluator));
-                candidate.cost = Some(cost(&evaluator, &self.timed));
+                candidate.nanoseconds = Some(cost(&evaluator, &self.timed));
+                candidate.nanoseconds_all_threads =
+                    self.many.as_ref().map(|many| cost(&evaluator, many));
                 candidate.bytes = evaluator.bytes();
                 Some(Box::new(evaluator) as Box<dyn Evaluator>)
             }
@@ -249,9 +286,9 @@ impl<'a> Trial<'a> {
 
     /// What an evaluation costs, in nanoseconds, if the evaluator is within the tolerance.
     fn cost_of(&self, candidate: &Candidate) -> Option<f64> {
-        let (errors, cost) = (candidate.errors?, candidate.cost?);
+        let (errors, nanoseconds) = (candidate.errors?, candidate.nanoseconds?);
         let making = 1e9 * candidate.build_seconds / self.scene.evaluations.max(1.0);
-        (errors.max <= self.allowed()).then_some(cost.nanoseconds + making)
+        (errors.max <= self.allowed()).then_some(nanoseconds + making)
     }
 
     fn least_cost(&self) -> f64 {
@@ -259,7 +296,8 @@ impl<'a> Trial<'a> {
         costs.fold(f64::INFINITY, f64::min)
     }
 
-    fn decide(mut self) -> Result<Plan, PlanError> {
+    /// What was measured, with the reasons, and the choice.
+    fn decide(mut self) -> (Vec<Candidate>, Result<Plan, PlanError>) {
         let least = self.least_cost();
         let allowed = self.allowed();
         let costs: Vec<Option<f64>> = self.tried.iter().map(|(_, c)| self.cost_of(c)).collect();
@@ -281,13 +319,14 @@ impl<'a> Trial<'a> {
             };
         }
         let candidates: Vec<Candidate> = self.tried.into_iter().map(|(_, c)| c).collect();
-        match chosen {
+        let plan = match chosen {
             Some(evaluator) => Ok(Plan {
                 evaluator,
-                candidates,
+                candidates: candidates.clone(),
             }),
             None => Err(failure(self.scene.tolerance, &candidates)),
-        }
+        };
+        (candidates, plan)
     }
 }
 

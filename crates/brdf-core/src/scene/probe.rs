@@ -99,21 +99,23 @@ impl Probe {
 
 /// f_r of each point by itself: the measure of all evaluators.
 fn exact<T: Primitive>(brdf: &AnyBrdf, points: &Points<T>, count: usize) -> Vec<f64> {
-    let value = |i: usize| {
-        let at = |array: &[T]| array[i].widen();
-        let geometry = match *points {
-            Points::Cosines { psi, theta, phi } => {
-                Geometry::from_cosines(at(psi), at(theta), at(phi))
-            }
-            Points::Angles { psi, theta, phi } => Geometry::new(at(psi), at(theta), at(phi)),
-            Points::Directions { source, view } => {
-                let vector = |[x, y, z]: [&[T]; 3]| Vector3::new(at(x), at(y), at(z));
-                Geometry::from_directions(&vector(source), &vector(view))
-            }
-        };
-        geometry.map_or(f64::NAN, |geometry| brdf.value(&geometry))
-    };
+    let value = |i: usize| single_value(brdf, points, i);
     (0..count).into_par_iter().map(value).collect()
+}
+
+/// f_r of one of the points; NaN outside the domain.
+#[inline]
+pub(super) fn single_value<T: Primitive>(brdf: &AnyBrdf, points: &Points<T>, i: usize) -> f64 {
+    let at = |array: &[T]| array[i].widen();
+    let geometry = match *points {
+        Points::Cosines { psi, theta, phi } => Geometry::from_cosines(at(psi), at(theta), at(phi)),
+        Points::Angles { psi, theta, phi } => Geometry::new(at(psi), at(theta), at(phi)),
+        Points::Directions { source, view } => {
+            let vector = |[x, y, z]: [&[T]; 3]| Vector3::new(at(x), at(y), at(z));
+            Geometry::from_directions(&vector(source), &vector(view))
+        }
+    };
+    geometry.map_or(f64::NAN, |geometry| brdf.value(&geometry))
 }
 
 fn relative_errors<T: Primitive>(values: &[T], exact: &[f64]) -> Vec<f64> {

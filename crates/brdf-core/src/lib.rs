@@ -66,6 +66,7 @@ mod quadrature;
 mod quotient;
 pub mod real;
 pub mod reflectance;
+pub mod sampling;
 pub mod shadowing;
 mod trigonometry;
 

@@ -75,3 +75,4 @@ pub use family::{AnyBrdf, Family, ModelParameters};
 pub use geometry::{Geometry, GeometryError};
 pub use pair::HalfVector;
 pub use quotient::Quotient;
+pub use sampling::{Sample, Sampler};

@@ -8,6 +8,7 @@ use std::hint::black_box;
 use brdf_core::evaluator::{Evaluator, Exact, FittedFresnel, Points, Single};
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Parameters};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use rayon::prelude::*;
 
 /// Points that stay in the nearest caches.
 const POINTS: usize = 1024;
@@ -105,5 +106,97 @@ fn in_cache(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, in_cache);
+/// All families, in `f32` and `f64`, from cosines.
+fn families(c: &mut Criterion) {
+    let [psi, theta, phi] = angles(POINTS).map(|a| a.iter().map(|x| x.cos()).collect::<Vec<_>>());
+    let points = Points::Cosines {
+        psi: &psi,
+        theta: &theta,
+        phi: &phi,
+    };
+    let narrow = |a: &[f64]| a.iter().map(|&x| x as f32).collect::<Vec<f32>>();
+    let [psi32, theta32, phi32] = [narrow(&psi), narrow(&theta), narrow(&phi)];
+    let points32 = Points::Cosines {
+        psi: &psi32,
+        theta: &theta32,
+        phi: &phi32,
+    };
+    let mut group = c.benchmark_group("families, 1024 points from cosines");
+    group.throughput(Throughput::Elements(POINTS as u64));
+    for family in Family::ALL {
+        let (mut out, mut out32) = (vec![0.0; POINTS], vec![0.0_f32; POINTS]);
+        let (exact, single) = (Exact::new(brdf(family)), Single::new(brdf(family)));
+        group.bench_function(format!("{family:?} f64"), |b| {
+            b.iter(|| exact.values(black_box(&points), &mut out));
+        });
+        group.bench_function(format!("{family:?} f32"), |b| {
+            b.iter(|| single.values_f32(black_box(&points32), &mut out32));
+        });
+    }
+    group.finish();
+}
+
+/// Whether `f32` is as fast as the memory: against a triad over the same arrays, three in, one out.
+fn in_memory(c: &mut Criterion) {
+    const MANY: usize = 16 << 20;
+    let [psi, theta, phi] =
+        angles(MANY).map(|a| a.iter().map(|x| x.cos() as f32).collect::<Vec<_>>());
+    let mut out = vec![0.0_f32; MANY];
+    let points = Points::Cosines {
+        psi: &psi,
+        theta: &theta,
+        phi: &phi,
+    };
+    let single = Single::new(brdf(Family::Paper));
+    let mut group = c.benchmark_group("16 Mi points, all threads");
+    group.sample_size(20);
+    group.throughput(Throughput::Elements(MANY as u64));
+    group.bench_function("triad", |b| {
+        b.iter(|| triad([&psi, &theta, &phi], &mut out))
+    });
+    group.bench_function("f32 batch from cosines", |b| {
+        b.iter(|| single.values_f32(black_box(&points), &mut out));
+    });
+    group.finish();
+}
+
+/// out = a + b c, on all threads.
+fn triad([a, b, c]: [&[f32]; 3], out: &mut [f32]) {
+    const PIECE: usize = 1 << 13;
+    out.par_chunks_mut(PIECE)
+        .enumerate()
+        .for_each(|(piece, out)| {
+            let range = piece * PIECE..piece * PIECE + out.len();
+            let (a, b, c) = (&a[range.clone()], &b[range.clone()], &c[range]);
+            for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
+                *out = a + b * c;
+            }
+        });
+}
+
+/// A grid of views for each incidence, against as many single points.
+fn grid(c: &mut Criterion) {
+    let [psi, theta, phi] = angles(POINTS);
+    let psi = &psi[..16];
+    let exact = Exact::new(brdf(Family::Paper));
+    let mut out = vec![0.0; psi.len() * POINTS];
+    let mut group = c.benchmark_group("grid, 16 incidences, 1024 views");
+    group.throughput(Throughput::Elements(out.len() as u64));
+    group.bench_function("f64 grid", |b| {
+        b.iter(|| exact.grid(black_box(psi), &theta, &phi, &mut out));
+    });
+    let repeated: Vec<f64> = psi.iter().flat_map(|&psi| vec![psi; POINTS]).collect();
+    let (theta, phi) = (theta.repeat(psi.len()), phi.repeat(psi.len()));
+    let points = Points::Angles {
+        psi: &repeated,
+        theta: &theta,
+        phi: &phi,
+    };
+    group.bench_function("f64 batch from angles", |b| {
+        b.iter(|| exact.values(black_box(&points), &mut out));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, in_cache, families, in_memory, grid);
 criterion_main!(benches);

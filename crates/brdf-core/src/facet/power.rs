@@ -46,7 +46,11 @@ impl Power {
         let excess = R::of(self.k1_squared - 1.0) * (half.across2 / denominator);
         let fraction = k1_squared * half.length2 / denominator;
         let next_to_the_peak = excess.abs() < R::of(0.5);
-        R::select(next_to_the_peak, excess.ln_1p(), fraction.ln())
+        let (zero, one) = (R::of(0.0), R::of(1.0));
+        let fraction = R::select(next_to_the_peak, one + excess, fraction);
+        // What the rounding of 1 + excess took away.
+        let rest = (excess - (fraction - one)) / fraction;
+        fraction.ln() + R::select(next_to_the_peak, rest, zero)
     }
 }
 

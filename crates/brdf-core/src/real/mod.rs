@@ -96,12 +96,6 @@ pub trait Real:
     fn ln(self) -> Self {
         elementary::ln(self)
     }
-
-    /// ln(1 + self), accurate also where self is small.
-    #[inline(always)]
-    fn ln_1p(self) -> Self {
-        elementary::ln_1p(self)
-    }
 }
 
 impl<T: Primitive> Real for T {

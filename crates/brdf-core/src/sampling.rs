@@ -114,7 +114,8 @@ pub struct Sample {
 impl Sampler {
     /// The sampler of a BRDF.
     ///
-    /// It costs 17 reflectances and as many small searches, some milliseconds: make one for a material, not for a ray.
+    /// It costs 17 reflectances and as many small searches, some milliseconds: make one for a
+    /// material, not for a ray.
     pub fn new(brdf: &AnyBrdf) -> Self {
         Self {
             brdf: *brdf,

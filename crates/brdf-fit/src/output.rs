@@ -4,6 +4,8 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 /// A file could not be written; what was there before is still there.
 #[derive(Debug, thiserror::Error)]
 #[error("{}: cannot be written: {error}", path.display())]
@@ -48,6 +50,14 @@ pub fn resolved(path: &Path) -> PathBuf {
             .file_name()
             .map_or_else(|| path.to_owned(), |name| folder.join(name)),
     }
+}
+
+/// Writes a value as JSON, by [`write_file`].
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), WriteError> {
+    write_file(path, |writer| {
+        serde_json::to_writer_pretty(&mut *writer, value)?;
+        writer.write_all(b"\n")
+    })
 }
 
 /// An output of a command that would take the place of an input or of another output.

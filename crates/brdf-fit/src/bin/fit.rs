@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use brdf_fit::energy::USUAL_LIMIT_DEG;
 use brdf_fit::model::{Held, Model};
-use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file};
+use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file, write_json};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
@@ -457,10 +457,7 @@ fn deliver(
     }
     let document = Document::new(reports);
     if let Some(path) = &arguments.json {
-        let written = write_file(path, |writer| {
-            serde_json::to_writer_pretty(&mut *writer, &document)?;
-            writer.write_all(b"\n")
-        });
+        let written = write_json(path, &document);
         failed.extend(written.err().map(|error| error.to_string()));
     }
     let printed = print(arguments, &document.reports);

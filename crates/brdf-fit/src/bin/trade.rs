@@ -9,7 +9,7 @@ use brdf_core::published::PUBLISHED;
 use brdf_core::scene::{Azimuth, Coordinates, Domain, Scene};
 use brdf_core::{AnyBrdf, ModelParameters, ThreeParameterBrdf};
 use brdf_fit::model::Model;
-use brdf_fit::output::{self, check_outputs, complain, write_file};
+use brdf_fit::output::{self, check_outputs, complain, write_file, write_json};
 use brdf_fit::plot::{Figure, PlotError};
 use brdf_fit::report::Document;
 use brdf_fit::trade::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
@@ -333,10 +333,7 @@ impl Outputs {
             failed.extend(write_file(path, csv).err().map(|error| error.to_string()));
         }
         if let Some(path) = &self.json {
-            let written = write_file(path, |writer| {
-                serde_json::to_writer_pretty(&mut *writer, document)?;
-                writer.write_all(b"\n")
-            });
+            let written = write_json(path, document);
             failed.extend(written.err().map(|error| error.to_string()));
         }
         if let Some(path) = &self.plot {

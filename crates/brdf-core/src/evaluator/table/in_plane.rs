@@ -3,14 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::lattice::{Lattice, Wanted};
-use super::{Table, TableError, signed_tilt, tilt_at, view_at};
+use super::{Table, TableError, signed_tilt, tilt_at, value_in_plane, view_at};
+use crate::AnyBrdf;
 use crate::evaluator::Points;
 use crate::evaluator::points::BLOCK;
 use crate::evaluator::vector::{Formula, evaluate_all};
 use crate::pair::Pair;
 use crate::real::Real;
-use crate::scene::{Domain, worst_error};
-use crate::{AnyBrdf, Geometry};
+use crate::scene::Domain;
 
 /// A table of f_r over incidence and view in the plane of incidence. Its coordinates are
 /// tan(psi/2), and arsinh(tan alpha / w) as for one incidence.
@@ -42,30 +42,25 @@ impl InPlaneTable {
             tilt_at(largest, largest_view, width),
         );
         let domain = Domain::in_plane(incidence, (0.0, largest_view));
-        let lattice = Lattice::grown(&Wanted {
+        let view = |[half, tilt]: [f64; 2]| {
+            let psi = 2.0 * half.atan();
+            (psi, view_at(psi, tilt, width))
+        };
+        Lattice::grown(&Wanted {
             ranges: [((0.5 * least).tan(), (0.5 * largest).tan()), ends],
-            function: |[half, tilt]: [f64; 2]| {
-                let psi = 2.0 * half.atan();
-                let theta = view_at(psi, tilt, width);
-                Geometry::in_plane(psi, theta).map_or(f64::NAN, |geometry| brdf.value(&geometry))
+            function: |at| {
+                let (psi, theta) = view(at);
+                value_in_plane(brdf, psi, theta)
             },
-            used: |[half, tilt]: [f64; 2]| {
-                view_at(2.0 * half.atan(), tilt, width).abs() <= largest_view
-            },
+            used: |at| view(at).1.abs() <= largest_view,
             offset: 0.0,
-            check: |lattice: &Lattice<2>| {
-                let table = Self {
-                    lattice: lattice.clone(),
-                    coordinates,
-                };
-                worst_error(brdf, &table, &domain)
+            table: |lattice| Self {
+                lattice,
+                coordinates,
             },
+            checked: (brdf, &domain),
             tolerance,
             limit,
-        })?;
-        Ok(Self {
-            lattice,
-            coordinates,
         })
     }
 }

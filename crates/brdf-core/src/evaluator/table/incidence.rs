@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::lattice::{Lattice, Wanted};
-use super::{Table, TableError, signed_tilt, tilt_at, view_at};
+use super::{Table, TableError, signed_tilt, tilt_at, value_in_plane, view_at};
+use crate::AnyBrdf;
 use crate::evaluator::Points;
 use crate::evaluator::vector::{Formula, evaluate};
 use crate::pair::Pair;
 use crate::real::Real;
-use crate::scene::{Domain, worst_error};
-use crate::{AnyBrdf, Geometry};
+use crate::scene::Domain;
 
 /// A table of f_r over the signed view angle in the plane of incidence, for one incidence angle: a
 /// source that stands still. Its coordinate is arsinh(tan alpha / w), w the width of the lobe and
@@ -40,27 +40,18 @@ impl IncidenceTable {
         };
         let ends = [-largest_view, largest_view].map(|theta| tilt_at(psi, theta, width));
         let domain = Domain::in_plane((psi, psi), (0.0, largest_view));
-        let lattice = Lattice::grown(&Wanted {
+        Lattice::grown(&Wanted {
             ranges: [(ends[0], ends[1])],
-            function: |[tilt]: [f64; 1]| {
-                let theta = view_at(psi, tilt, width);
-                Geometry::in_plane(psi, theta).map_or(f64::NAN, |geometry| brdf.value(&geometry))
-            },
+            function: |[tilt]: [f64; 1]| value_in_plane(brdf, psi, view_at(psi, tilt, width)),
             used: |_| true,
             offset: 0.0,
-            check: |lattice: &Lattice<1>| {
-                let table = Self {
-                    lattice: lattice.clone(),
-                    coordinate,
-                };
-                worst_error(brdf, &table, &domain)
+            table: |lattice| Self {
+                lattice,
+                coordinate,
             },
+            checked: (brdf, &domain),
             tolerance,
             limit,
-        })?;
-        Ok(Self {
-            lattice,
-            coordinate,
         })
     }
 }

@@ -15,7 +15,7 @@ use crate::facet::FacetDistribution;
 use crate::family::each;
 use crate::pair::Pair;
 use crate::real::Real;
-use crate::scene::{Domain, worst_error};
+use crate::scene::Domain;
 use crate::shadowing::Shadowing;
 
 /// A table for all pairs of directions.
@@ -51,7 +51,7 @@ impl IsotropicTable {
         let at_tilt = |tan2_alpha: f64| (tan2_alpha / (width * width)).ln_1p();
         let largest_tilt = domain.largest_tilt().tan().powi(2);
         let least_cosine = domain.largest_facet_incidence().cos();
-        let lattice = Lattice::grown(&Wanted {
+        Lattice::grown(&Wanted {
             ranges: [(0.0, at_tilt(largest_tilt)), (least_cosine, 1.0)],
             function: |[tilt, cos_gamma]: [f64; 2]| {
                 let tan2_alpha = width * width * tilt.exp_m1();
@@ -59,17 +59,11 @@ impl IsotropicTable {
             },
             used: |_| true,
             offset: brdf.parameters().kd * FRAC_1_PI,
-            check: |lattice: &Lattice<2>| {
-                let table = Self {
-                    lattice: lattice.clone(),
-                    brdf,
-                };
-                worst_error(&brdf, &table, domain)
-            },
+            table: |lattice| Self { lattice, brdf },
+            checked: (&brdf, domain),
             tolerance,
             limit,
-        })?;
-        Ok(Self { lattice, brdf })
+        })
     }
 }
 

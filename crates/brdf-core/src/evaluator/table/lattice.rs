@@ -4,6 +4,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::TableError;
+use crate::AnyBrdf;
+use crate::evaluator::Evaluator;
+use crate::scene::{Domain, worst_error};
 
 /// Intervals of each axis to begin with.
 const FIRST: usize = 8;
@@ -89,8 +92,21 @@ fn count(axes: &[Axis]) -> Option<usize> {
         .try_fold(1_usize, |all, axis| all.checked_mul(nodes(axis)?))
 }
 
-/// What a lattice is made of.
-pub(super) struct Wanted<const D: usize, F, U, C> {
+fn check_memory(axes: &[Axis], limit: usize, reached: f64) -> Result<(), TableError> {
+    let nodes = count(axes).unwrap_or(usize::MAX);
+    let needed = nodes.saturating_mul(size_of::<f32>());
+    if needed <= limit {
+        return Ok(());
+    }
+    Err(TableError::Memory {
+        needed,
+        limit,
+        reached,
+    })
+}
+
+/// What a table is made of.
+pub(super) struct Wanted<'a, const D: usize, F, U, M> {
     /// First and last coordinate of each axis.
     pub(super) ranges: [(f64, f64); D],
     /// The function.
@@ -99,9 +115,11 @@ pub(super) struct Wanted<const D: usize, F, U, C> {
     pub(super) used: U,
     /// What is added to the function elsewhere: errors are relative to the sum.
     pub(super) offset: f64,
-    /// The largest relative error of a lattice where it is used.
-    pub(super) check: C,
-    /// What that may be.
+    /// The table of a lattice.
+    pub(super) table: M,
+    /// The BRDF, and the domain over which the table is checked against it.
+    pub(super) checked: (&'a AnyBrdf, &'a Domain),
+    /// The largest relative error that the table may have.
     pub(super) tolerance: f64,
     /// The largest memory, in bytes.
     pub(super) limit: usize,
@@ -121,14 +139,16 @@ impl<const D: usize> Lattice<D> {
         }
     }
 
-    /// Doubles the intervals of the axes until the lattice passes the check.
+    /// The table of a lattice, the intervals of whose axes are doubled until the table is within its
+    /// tolerance.
     ///
     /// Errors: it would need more memory than allowed.
-    pub(super) fn grown<F, U, C>(wanted: &Wanted<D, F, U, C>) -> Result<Self, TableError>
+    pub(super) fn grown<E, F, U, M>(wanted: &Wanted<D, F, U, M>) -> Result<E, TableError>
     where
+        E: Evaluator,
         F: Fn([f64; D]) -> f64 + Sync,
         U: Fn([f64; D]) -> bool + Sync,
-        C: Fn(&Self) -> f64,
+        M: Fn(Self) -> E,
     {
         let mut axes = wanted.ranges.map(|(from, to)| Axis {
             from,
@@ -137,26 +157,19 @@ impl<const D: usize> Lattice<D> {
         });
         let mut reached = f64::INFINITY;
         loop {
-            let needed = count(&axes)
-                .unwrap_or(usize::MAX)
-                .saturating_mul(size_of::<f32>());
-            if needed > wanted.limit {
-                return Err(TableError::Memory {
-                    needed,
-                    limit: wanted.limit,
-                    reached,
-                });
-            }
+            check_memory(&axes, wanted.limit, reached)?;
             let lattice = Self::filled(axes, &wanted.function);
             let errors: [f64; D] = std::array::from_fn(|d| lattice.error_along(d, wanted));
             let worst = errors.iter().copied().fold(0.0, f64::max);
-            let share = wanted.tolerance / (2 * D) as f64;
-            if worst <= share || worst <= 0.5 * wanted.tolerance {
-                reached = (wanted.check)(&lattice);
+            if worst <= 0.5 * wanted.tolerance {
+                let (brdf, domain) = wanted.checked;
+                let table = (wanted.table)(lattice);
+                reached = worst_error(brdf, &table, domain);
                 if reached <= wanted.tolerance {
-                    return Ok(lattice);
+                    return Ok(table);
                 }
             }
+            let share = wanted.tolerance / (2 * D) as f64;
             for (axis, error) in axes.iter_mut().zip(errors) {
                 if error > share || error == worst {
                     axis.intervals = axis.intervals.saturating_mul(2);
@@ -174,7 +187,7 @@ impl<const D: usize> Lattice<D> {
     }
 
     /// The largest relative error half way between two nodes along axis d.
-    fn error_along<F, U, C>(&self, d: usize, wanted: &Wanted<D, F, U, C>) -> f64
+    fn error_along<F, U, M>(&self, d: usize, wanted: &Wanted<D, F, U, M>) -> f64
     where
         F: Fn([f64; D]) -> f64 + Sync,
         U: Fn([f64; D]) -> bool + Sync,
@@ -276,38 +289,36 @@ fn coordinates<const D: usize>(
 mod tests {
     use super::*;
 
-    fn grown(tolerance: f64, limit: usize) -> Result<Lattice<2>, TableError> {
-        Lattice::grown(&Wanted {
-            ranges: [(0.0, 2.0), (-1.0, 1.0)],
-            function: |[x, y]: [f64; 2]| (x * x).exp() * (2.0 + y),
-            used: |_| true,
-            offset: 0.0,
-            check: |lattice: &Lattice<2>| {
-                let value = lattice.interpolated([1.234, 0.321]);
-                (f64::from(value) / ((1.234_f64 * 1.234).exp() * 2.321) - 1.0).abs()
-            },
-            tolerance,
-            limit,
-        })
+    /// A lattice of a function that is curved along the first axis only.
+    fn lattice(intervals: usize) -> Lattice<2> {
+        let axis = |from, to, intervals| Axis {
+            from,
+            to,
+            intervals,
+        };
+        let axes = [axis(0.0, 2.0, intervals), axis(-1.0, 1.0, FIRST)];
+        Lattice::filled(axes, &|[x, y]: [f64; 2]| (x * x).exp() * (2.0 + y))
     }
 
     #[test]
-    fn it_grows_where_the_function_is_curved() {
-        let lattice = grown(1e-3, 1 << 20).unwrap();
-        assert!(lattice.axes[0].intervals > 50);
-        assert_eq!(lattice.axes[1].intervals, FIRST);
-        assert_eq!(lattice.bytes(), 4 * lattice.values.len());
+    fn between_the_nodes_it_is_linear() {
+        let value = lattice(512).interpolated([1.234, 0.321]);
+        let exact = (1.234_f64 * 1.234).exp() * 2.321;
+        assert!((f64::from(value) / exact - 1.0).abs() < 1e-5);
+        assert_eq!(lattice(8).bytes(), 4 * 81);
     }
 
     #[test]
-    fn it_stops_at_the_memory_that_is_allowed() {
-        let error = grown(1e-6, 1 << 12).unwrap_err();
-        assert!(error.to_string().contains("4096"), "{error}");
+    fn more_memory_than_allowed_is_told() {
+        let axes = lattice(1000).axes;
+        let error = check_memory(&axes, 4096, 0.01).unwrap_err().to_string();
+        assert!(error.contains("36036 bytes: allowed are 4096"), "{error}");
+        assert!(error.contains("errs by 1.0e-2"), "{error}");
     }
 
     #[test]
     fn beyond_the_ends_it_is_constant_and_nan_stays_nan() {
-        let lattice = grown(1e-2, 1 << 20).unwrap();
+        let lattice = lattice(8);
         assert_eq!(
             lattice.interpolated([5.0, 0.0]),
             lattice.interpolated([2.0, 0.0])
@@ -318,7 +329,7 @@ mod tests {
 
     #[test]
     fn it_comes_back_from_a_file_or_is_refused() {
-        let lattice = grown(1e-2, 1 << 20).unwrap();
+        let lattice = lattice(8);
         let json = serde_json::to_string(&lattice).unwrap();
         assert_eq!(serde_json::from_str::<Lattice<2>>(&json).unwrap(), lattice);
         for (from, to, message) in [

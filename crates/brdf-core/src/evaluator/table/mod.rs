@@ -20,6 +20,7 @@ use super::vector::{native, rounded};
 use super::{Evaluator, LengthError, Points, Precision};
 use crate::pair::Pair;
 use crate::real::Real;
+use crate::{AnyBrdf, Geometry};
 
 /// Why a table cannot be made.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -105,6 +106,11 @@ fn view_at(psi: f64, tilt: f64, width: f64) -> f64 {
 /// The signed tilt coordinate at a signed view angle.
 fn tilt_at(psi: f64, theta: f64, width: f64) -> f64 {
     ((0.5 * (psi + theta)).tan() / width).asinh()
+}
+
+/// f_r in plane; NaN outside the domain.
+fn value_in_plane(brdf: &AnyBrdf, psi: f64, theta: f64) -> f64 {
+    Geometry::in_plane(psi, theta).map_or(f64::NAN, |geometry| brdf.value(&geometry))
 }
 
 /// The largest view angle of a table, next to 90 deg: the nodes beyond the ends of its domain.

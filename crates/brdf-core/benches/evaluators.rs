@@ -152,7 +152,7 @@ fn in_memory(c: &mut Criterion) {
     group.sample_size(20);
     group.throughput(Throughput::Elements(MANY as u64));
     group.bench_function("triad", |b| {
-        b.iter(|| triad([&psi, &theta, &phi], &mut out))
+        b.iter(|| triad([&psi, &theta, &phi], &mut out));
     });
     group.bench_function("f32 batch from cosines", |b| {
         b.iter(|| single.values_f32(black_box(&points), &mut out));

@@ -235,10 +235,8 @@ impl Evaluation {
             return row.map(|Row { name, brdf }| (name, brdf));
         };
         let document = Document::read(path).map_err(|error| error.to_string())?;
-        let fits = document.reports.iter();
-        let found = fits
-            .filter_map(|report| Some((report, report.fit.as_ref()?)))
-            .next();
+        let mut reports = document.reports.iter();
+        let found = reports.find_map(|report| Some((report, report.fit.as_ref()?)));
         let (report, fit) = found.ok_or_else(|| format!("{}: holds no fit", path.display()))?;
         let at = ModelParameters {
             p: fit.p,

@@ -138,7 +138,11 @@ impl Geometry {
         let sin2 = |cosine: f64| (1.0 - cosine) * (1.0 + cosine);
         let sines = (sin2(cos_psi) * sin2(cos_theta)).sqrt();
         let sum2 = sin2(cos_psi) + sin2(cos_theta) + 2.0 * sines;
-        let in_plane = if along == 0.0 { 0.0 } else { (along * (cos_psi + cos_theta)).powi(2) / sum2 };
+        let in_plane = if along == 0.0 {
+            0.0
+        } else {
+            (along * (cos_psi + cos_theta)).powi(2) / sum2
+        };
         let across2 = in_plane + 2.0 * sines * (1.0 - cos_phi);
         let sin2_gamma = 0.25 * (along * along + across2);
         Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))

@@ -135,12 +135,7 @@ mod tests {
         assert_eq!(sin2_cos2_of_any_half(0.0), (0.0, 1.0));
         assert_eq!(sin2_cos2_of_any_half(PI).0, 1.0);
         assert!(ulps(sin2_cos2_of_any_half(PI).1, REST.powi(2)) <= 1.0);
-        assert!(
-            ulps(
-                sin2_cos2_of_any_half(2.0 * PI).0,
-                (2.0 * REST).powi(2)
-            ) <= 1.0
-        );
+        assert!(ulps(sin2_cos2_of_any_half(2.0 * PI).0, (2.0 * REST).powi(2)) <= 1.0);
     }
 
     proptest! {

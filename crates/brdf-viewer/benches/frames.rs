@@ -127,7 +127,7 @@ fn while_fitting(_: &mut Criterion) {
     let run = viewer.state.run.as_ref().expect("a run");
     println!(
         "frames while {} scans of {} samples are fitted in {:.1} s: {} frames, median {:.1?}, 99 % below {:.1?}, longest {:.1?}",
-        run.jobs,
+        run.jobs(),
         viewer.state.samples.len(),
         started.elapsed().as_secs_f64(),
         frames.len(),

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use super::FacetDistribution;
 use crate::pair::HalfVector;
+use crate::quadrature::integrate;
 use crate::quotient::Quotient;
 use crate::real::Real;
-use crate::quadrature::integrate;
 
 /// The smallest and the largest exponent p. At the larger, the widest distribution, which rises
 /// like k1^(2 p) towards grazing tilts, still is within the range of numbers.

@@ -35,8 +35,8 @@ pub struct Layer<'a> {
     pub sigma: Sigma<'a>,
     /// The incidences that are shown, psi in radians; `None` shows up to 8 of those with readings.
     pub incidences: Option<&'a [f64]>,
-    /// The family of colours: see [`colour`](super::colour).
-    pub family: usize,
+    /// The family of colours, where there are several samples: see [`colour`](super::colour).
+    pub family: Option<usize>,
 }
 
 /// One figure of a view, `view`, of one or several samples: together, in panels or in the polar

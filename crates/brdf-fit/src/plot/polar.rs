@@ -39,7 +39,7 @@ pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError
 
 /// What of the readings has no radius.
 pub(super) fn note_on_lost(curves: &Curves) -> Option<String> {
-    let negative = curves.readings().filter(|r| r.value < 0.0).count();
+    let negative = curves.negative;
     (negative > 0).then(|| format!("{} < 0 not shown", counted(negative, "reading")))
 }
 

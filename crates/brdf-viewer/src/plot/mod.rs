@@ -1,6 +1,5 @@
 //! The middle of the window: theory against experiment.
 
-pub mod axis;
 pub mod cartesian;
 pub mod hover;
 pub mod items;
@@ -11,8 +10,9 @@ use brdf_fit::plot::{Curve, Layout, MarkShape, mark};
 use egui::{CentralPanel, Color32, Id, Ui};
 
 use crate::intent::Intent;
-use crate::panels::{degrees, theme};
 use crate::state::State;
+use crate::theme;
+use crate::widgets::degrees;
 
 /// A curve with how it looks.
 pub struct Drawn<'a> {
@@ -24,6 +24,16 @@ pub struct Drawn<'a> {
     pub colour: Color32,
     /// The mark of its readings.
     pub mark: MarkShape,
+}
+
+impl Drawn<'_> {
+    /// How its readings look.
+    pub fn look(&self) -> items::Look {
+        items::Look {
+            mark: self.mark,
+            colour: self.colour,
+        }
+    }
 }
 
 /// Draws the plot.
@@ -76,12 +86,13 @@ fn drawn<'a>(ui: &Ui, state: &'a State) -> Vec<Drawn<'a>> {
     let mut all = Vec::new();
     for sample in state.visible() {
         let curves = state.shown.curves(sample.scan_id());
+        let family = state.family_of(sample);
         for (i, curve) in curves.iter().enumerate() {
             all.push(Drawn {
                 curve,
                 sample: &sample.name,
-                colour: theme::colour(sample.family, i, curves.len(), ground),
-                mark: mark(sample.family, i),
+                colour: theme::colour(family, i, curves.len(), ground),
+                mark: mark(family, i),
             });
         }
     }

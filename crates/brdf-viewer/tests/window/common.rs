@@ -230,7 +230,12 @@ pub(crate) fn colour_of(window: &Window, i: usize) -> Color32 {
     let state = &window.state().state;
     let sample = state.active_sample().unwrap();
     let shown = sample.scan().shown_psi().len();
-    let [r, g, b] = brdf_fit::plot::colour(sample.family, i, shown, brdf_fit::plot::Ground::Light);
+    let [r, g, b] = brdf_fit::plot::colour(
+        state.family_of(sample),
+        i,
+        shown,
+        brdf_fit::plot::Ground::Light,
+    );
     Color32::from_rgb(r, g, b)
 }
 

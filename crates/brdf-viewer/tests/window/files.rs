@@ -11,8 +11,9 @@ use brdf_fit::read::{Convention, Side};
 use brdf_fit::report::Document;
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::{Export, Intent};
+use brdf_viewer::job::Event;
 use brdf_viewer::state::saved::Settings;
-use brdf_viewer::worker::{Event, Events};
+use brdf_viewer::worker::Events;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
@@ -153,7 +154,7 @@ fn the_dialogs_of_the_system_are_used_where_there_are_any() {
     menu(&mut window, "File", "Open path...");
     click(&mut window, "Browse...");
     settle(&mut window);
-    assert_eq!(names(&window), ["in", "in"]);
+    assert_eq!(names(&window), ["in", "in (2)"]);
 }
 
 fn wait_for(window: &mut Window, path: &Path) {

@@ -49,13 +49,20 @@ fn both_stages_give_the_numbers_of_the_library() {
     check_same(&window, &expected(|_| {}));
     assert!(shows(&window, "stage 1: psi <= 60 deg"));
     assert!(window.query_by_label("1 of 1 fitted").is_some());
-    let run = window.state().state.run.clone().unwrap();
+    let steps = window
+        .state()
+        .state
+        .active_sample()
+        .unwrap()
+        .scan()
+        .steps
+        .clone();
     let fit = report(&window).fit.unwrap();
     for (phase, stage) in [
         (Phase::Stage1, fit.stage1.unwrap()),
         (Phase::Stage2, fit.stage2.unwrap()),
     ] {
-        let points: Vec<_> = run.points.iter().filter(|p| p.phase == phase).collect();
+        let points: Vec<_> = steps.iter().filter(|p| p.phase == phase).collect();
         assert_eq!(points.last().unwrap().iteration, stage.iterations);
         assert_eq!(points.len() as u64, stage.iterations + 1);
     }
@@ -232,7 +239,7 @@ fn all_samples_are_fitted_together() {
     click(&mut window, "Fit all");
     let state = &window.state().state;
     let run = state.run.as_ref().unwrap();
-    assert_eq!((run.jobs, run.done), (4, 4));
+    assert_eq!((run.jobs(), run.done()), (4, 4));
     let measured = state.samples.iter().filter(|s| s.scan().readings() > 0);
     assert!(
         measured

@@ -150,7 +150,7 @@ fn the_quantity_and_the_side_are_chosen() {
     let expected = plain.value * plain.theta_deg.to_radians().cos();
     assert!((with_cosine.value - expected).abs() < 1e-15);
     click_role(&mut window, Role::ComboBox, "positive side");
-    click(&mut window, "theta > 0: forward side");
+    click(&mut window, "theta > 0: forward");
     assert_eq!(window.state().state.view.theta_positive, Side::Forward);
     let state = &window.state().state;
     let id = state.active_sample().unwrap().scan_id();

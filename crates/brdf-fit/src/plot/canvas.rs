@@ -38,8 +38,17 @@ pub(super) enum Stands {
 pub(super) fn drawn(
     draw: impl FnOnce(&mut Canvas) -> Result<(), PlotError>,
 ) -> Result<String, PlotError> {
+    drawn_above(0, draw)
+}
+
+/// The same with room for so many units below.
+pub(super) fn drawn_above(
+    room: u32,
+    draw: impl FnOnce(&mut Canvas) -> Result<(), PlotError>,
+) -> Result<String, PlotError> {
     let mut svg = String::new();
-    let (width, height) = (SIZE.0 * FINE, SIZE.1 * FINE);
+    let size = (SIZE.0, SIZE.1 + room);
+    let (width, height) = (size.0 * FINE, size.1 * FINE);
     let mut canvas = Canvas {
         backend: SVGBackend::with_string(&mut svg, (width, height)),
     };
@@ -54,7 +63,7 @@ pub(super) fn drawn(
     drop(canvas);
     // The size that is shown; the coordinates inside stay the fine ones.
     let fine = format!("width=\"{width}\" height=\"{height}\"");
-    let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     Ok(svg.replacen(&fine, &shown, 1))
 }
 

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use brdf_core::{AnyBrdf, Geometry};
 
 use super::Sigma;
-use super::arrangement::shortened;
 use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
 use super::selection::Selection;
 use super::view::{Scale, View};
@@ -249,7 +248,8 @@ impl Curve {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Styled {
     pub(super) curve: Curve,
-    pub(super) name: String,
+    /// The name of its sample, where there are several.
+    pub(super) sample: Option<String>,
     pub(super) colour: [u8; 3],
     pub(super) mark: MarkShape,
 }
@@ -337,13 +337,9 @@ impl Curves {
         );
         let count = all.len();
         for (i, curve) in all.into_iter().enumerate() {
-            let name = match source.name {
-                None => curve.name(),
-                Some(sample) => format!("{}, {}", curve.name(), shortened(sample, 18)),
-            };
             self.all.push(Styled {
                 curve,
-                name,
+                sample: source.name.map(str::to_owned),
                 colour: colour(source.family, i, count, Ground::Light),
                 mark: mark(source.family, i),
             });

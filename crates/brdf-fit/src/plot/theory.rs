@@ -3,9 +3,9 @@
 use plotters::style::Color;
 
 use super::axis::Axis;
-use super::canvas::{Canvas, drawn};
+use super::canvas::Canvas;
 use super::curves::{Curves, DECADES, Styled, lower_ends, values};
-use super::frame::{Frame, Key, Legend, draw_title};
+use super::frame::{Frame, Key, Legend, draw_title, drawn_with_samples};
 use super::style::{INK, ink};
 use super::title::Title;
 use super::view::{Scale, View};
@@ -58,7 +58,7 @@ pub(super) fn axis(curves: &Curves, scale: Scale) -> Axis {
 
 fn svg(title: &Title, curves: &Curves, y: Axis, note: Option<&str>) -> Result<String, PlotError> {
     let frame = Frame::over_theta(y);
-    drawn(|canvas| draw(canvas, &frame, title, curves, note))
+    drawn_with_samples(title, |canvas| draw(canvas, &frame, title, curves, note))
 }
 
 fn caption(title: &Title, curves: &Curves, axis: &str, more: &str) -> String {

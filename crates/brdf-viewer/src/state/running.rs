@@ -94,6 +94,8 @@ impl State {
     }
 
     pub(super) fn fits_ended(&mut self) {
+        // Where all samples of a run are closed, nothing is left of it.
+        self.run = self.run.take().filter(|run| run.jobs() > 0);
         let Some(run) = &mut self.run else {
             return;
         };
@@ -109,8 +111,5 @@ impl State {
         } else {
             format!("{done} of {jobs} fitted in {seconds:.2} s")
         };
-        if jobs == 0 {
-            self.run = None;
-        }
     }
 }

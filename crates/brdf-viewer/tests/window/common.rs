@@ -127,8 +127,14 @@ pub(crate) fn shows(window: &Window, words: &str) -> bool {
     window.query_all_by_label_contains(words).next().is_some()
 }
 
-/// Chooses an entry of a menu.
+/// Chooses an entry of a menu, and waits for what it does.
 pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
+    open_menu_and_click(window, title, entry);
+    settle(window);
+}
+
+/// Chooses an entry of a menu.
+pub(crate) fn open_menu_and_click(window: &mut Window, title: &str, entry: &str) {
     window.get_by_role_and_label(Role::Button, title).click();
     window.run();
     // The key stands behind the name. A button of the same name may stand elsewhere, too.
@@ -139,7 +145,6 @@ pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
     });
     let found = entries.last().unwrap();
     found.click();
-    settle(window);
 }
 
 /// Types into the number box of a parameter.

@@ -155,7 +155,11 @@ fn a_screenshot_does_not_take_the_place_of_a_scan() {
     let fit = folder.path().join("fit.json");
     let text = std::fs::read(in_workspace("data/measured/z307_on_aluminium.csv")).unwrap();
     std::fs::write(&scan, &text).unwrap();
-    let fitted = fit_command().arg(&scan).arg("--json").arg(&fit).output();
+    let fitted = fit_command()
+        .arg(&scan)
+        .args(["--n", "1.5", "--json"])
+        .arg(&fit)
+        .output();
     assert!(fitted.unwrap().status.success());
     let [scan, fit] = [&scan, &fit].map(|path| path.to_str().unwrap());
     // Its own, and that of a fit.

@@ -1,7 +1,7 @@
 //! f_r over the signed view angle: all incidences in one plot, or one plot for each, with the
 //! residuals below.
 
-use brdf_fit::plot::{Layout, Reading, View, value_range};
+use brdf_fit::plot::{Layout, Reading, View};
 use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, Plot, PlotResponse};
 
@@ -195,9 +195,7 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
 
 fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
     let (state, axis) = (place.state, plots.axis);
-    // All panels have the same axis: that of all curves.
-    let all = plots.drawn.iter().map(|drawn| drawn.curve);
-    let range = value_range(all, state.view.scale).unwrap_or((0.001, 1.0));
+    let range = plots.range;
     let end = |value: f64| axis.place(value).unwrap_or(0.0);
     let lowest = !state.view.residuals;
     let quantity = state.view.quantity;
@@ -235,11 +233,7 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
 }
 
 fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
-    let all = plots.drawn.iter().flat_map(|drawn| &drawn.curve.readings);
-    let largest = all
-        .map(|reading| reading.residual().abs())
-        .fold(0.0, f64::max);
-    let reach = if largest > 0.0 { 1.1 * largest } else { 1.0 };
+    let reach = plots.reach;
     let plot = over_theta(place, Axis::Linear, "measured - theory", true)
         .include_y(-reach)
         .include_y(reach);

@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use brdf_fit::plot::{Curve, Reading, Theory, View};
+use brdf_fit::plot::{Curve, Layout, Reading, Scale, Theory, View, value_range};
 use brdf_fit::words::digits;
 use egui::{PopupAnchor, Pos2, Stroke, Tooltip};
 use egui_plot::{PlotResponse, PlotTransform};
@@ -24,16 +24,37 @@ pub struct Plots<'a> {
     pub drawn: &'a [Drawn<'a>],
     /// The axis of the BRDF.
     pub axis: Axis,
+    /// The ends of that axis, the same for all panels.
+    pub range: (f64, f64),
+    /// How far up and down the axis of the residuals goes.
+    pub reach: f64,
 }
 
 impl<'a> Plots<'a> {
     /// The plots of a frame.
     pub fn new(state: &'a State, drawn: &'a [Drawn<'a>]) -> Self {
+        let curves = drawn.iter().map(|drawn| drawn.curve);
+        let scale = match state.view.layout {
+            Layout::Polar => Scale::Linear,
+            _ => state.view.scale,
+        };
         Self {
             state,
             drawn,
-            axis: state.view.scale.into(),
+            axis: scale.into(),
+            range: value_range(curves, scale).unwrap_or((0.001, 1.0)),
+            reach: reach(drawn),
         }
+    }
+}
+
+/// A little more than the largest residual.
+fn reach(drawn: &[Drawn]) -> f64 {
+    let readings = drawn.iter().flat_map(|drawn| &drawn.curve.readings);
+    let largest = readings.map(|reading| reading.residual().abs());
+    match 1.1 * largest.fold(0.0, f64::max) {
+        0.0 => 1.0,
+        reach => reach,
     }
 }
 

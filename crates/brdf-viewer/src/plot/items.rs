@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use brdf_fit::plot::{MarkShape, Reading, Theory};
-use egui::{Color32, Mesh, Pos2, Shape, Stroke, Ui, epaint::PathShape, pos2, vec2};
+use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui, epaint::PathShape, pos2, vec2};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform};
 
 use crate::axis::Axis;
@@ -13,6 +13,9 @@ const FAR: f32 = 1e5;
 
 /// Half the size of a mark, in points.
 const MARK: f32 = 2.6;
+
+/// More readings of one curve than this overlap each other.
+const DENSE: usize = 250;
 
 /// Opacity of a band.
 const BAND: f32 = 0.25;
@@ -239,17 +242,18 @@ pub fn readings(
     shapes: &mut Vec<Shape>,
 ) {
     let bottom = transform.bounds().min()[1];
-    for of in readings {
-        let (x, value) = (of.theta_deg, value(of));
-        let ends = of.sigma.and_then(|sigma| {
+    for reading in readings {
+        let (x, value) = (reading.theta_deg, value(reading));
+        let ends = reading.sigma.and_then(|sigma| {
             let high = axis.place(value + sigma)?;
             let low = axis.place(value - sigma).unwrap_or(bottom);
             Some([[x, low], [x, high]])
         });
         error_bar(transform, ends, look.colour, shapes);
-        let at = axis.place(value).map(|y| [x, y]);
-        reading(transform, at, look.mark, look.colour, shapes);
     }
+    let at = |reading: &Reading| Some([reading.theta_deg, axis.place(value(reading))?]);
+    let points: Vec<[f64; 2]> = readings.iter().filter_map(at).collect();
+    marks(transform, &points, look, shapes);
 }
 
 /// The error bar of a reading, where it has one.
@@ -265,21 +269,31 @@ pub fn error_bar(
     }
 }
 
-/// A reading, where it has a place within the plot.
-pub fn reading(
+/// The marks of readings, as far as they are within the plot.
+pub fn marks(
     transform: &PlotTransform,
-    at: Option<[f64; 2]>,
-    mark: MarkShape,
-    colour: Color32,
+    points: &[[f64; 2]],
+    Look { mark, colour }: Look,
     shapes: &mut Vec<Shape>,
 ) {
-    let Some(at) = at else {
-        return;
-    };
-    let position = place(transform, at);
-    if transform.frame().expand(MARK).contains(position) {
-        shapes.push(mark_at(mark, position, MARK, colour));
+    let frame = transform.frame().expand(MARK);
+    let positions = points.iter().map(|point| place(transform, *point));
+    let seen = positions.filter(|position| frame.contains(*position));
+    if points.len() > DENSE {
+        shapes.push(squares(seen, colour));
+    } else {
+        shapes.extend(seen.map(|position| mark_at(mark, position, MARK, colour)));
     }
+}
+
+/// Squares in one shape, which is drawn many times faster than as many marks with smooth borders.
+fn squares(positions: impl Iterator<Item = Pos2>, colour: Color32) -> Shape {
+    let mut mesh = Mesh::default();
+    let size = vec2(1.6, 1.6) * MARK;
+    for position in positions {
+        mesh.add_colored_rect(Rect::from_center_size(position, size), colour);
+    }
+    Shape::mesh(mesh)
 }
 
 /// A mark of a reading.
@@ -315,7 +329,6 @@ pub fn upright(transform: &PlotTransform, x: f64, colour: Color32, shapes: &mut 
 
 #[cfg(test)]
 mod tests {
-    use egui::Rect;
     use egui::Vec2b;
 
     use super::*;

@@ -61,15 +61,15 @@ pub fn show(ui: &mut Ui, state: &mut State, intents: &mut Vec<Intent>) {
     });
 }
 
-/// So many columns of readings the plot can show: one is two points wide. It grows in steps, so
-/// that the drag of a border does not thin anew in every frame.
+/// So many columns of readings the plot can show: one is four points wide, less than a mark. It
+/// grows in steps, so that the drag of a border does not thin anew in every frame.
 fn columns(state: &State, size: egui::Vec2) -> usize {
-    const STEP: f32 = 64.0;
+    const STEP: f32 = 32.0;
     let width = match state.view.layout {
         Layout::Panels => size.x / cartesian::columns(incidences(state), size) as f32,
         Layout::Together | Layout::Polar => size.x,
     };
-    ((width / (2.0 * STEP)).ceil() * STEP).clamp(STEP, 1024.0) as usize
+    ((width / (4.0 * STEP)).ceil() * STEP).clamp(STEP, 1024.0) as usize
 }
 
 /// How many panels there are: one for each incidence of all samples that are shown.

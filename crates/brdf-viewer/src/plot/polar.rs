@@ -1,6 +1,6 @@
 //! The polar form of the paper's figures: f_r as radius at the view angle.
 
-use brdf_fit::plot::{Reading, Scale, Theory, View, value_range};
+use brdf_fit::plot::{Reading, Theory, View};
 use egui::{Align2, Shape, Stroke, Ui};
 use egui_plot::{Plot, PlotPoint, PlotTransform, Text};
 
@@ -28,9 +28,7 @@ const MOST_CIRCLES: f64 = 5.0;
 /// Draws the polar form.
 pub fn show(ui: &mut Ui, plots: &Plots) {
     let drawn: Vec<&Drawn> = plots.drawn.iter().collect();
-    let curves = drawn.iter().map(|one| one.curve);
-    let largest = value_range(curves, Scale::Linear).map_or(1.0, |(_, high)| high);
-    let (radius, step) = circles(largest);
+    let (radius, step) = circles(plots.range.1);
     let size = ui.available_size();
     let mut plot = Plot::new("polar")
         .id(super::id(plots.state, "polar"))
@@ -89,11 +87,11 @@ fn draw(
     }
     items::ribbon(transform, one.curve.theory.iter().map(band), colour, shapes);
     for reading in &one.curve.readings {
-        let ends = error_bar(reading);
-        items::error_bar(transform, ends, colour, shapes);
-        let at = at_radius(reading.theta_deg, reading.value);
-        items::reading(transform, at, one.mark, colour, shapes);
+        items::error_bar(transform, error_bar(reading), colour, shapes);
     }
+    let at = |reading: &Reading| at_radius(reading.theta_deg, reading.value);
+    let points: Vec<[f64; 2]> = one.curve.readings.iter().filter_map(at).collect();
+    items::marks(transform, &points, one.look(), shapes);
     // A point of the line is at an angle of its own, so that it is placed before it is drawn.
     let points = one.curve.theory.iter().map(|theory| {
         let [x, y] = place(theory.theta_deg, theory.value);

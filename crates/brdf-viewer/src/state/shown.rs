@@ -182,9 +182,10 @@ impl ShownScan {
         });
         self.errors.of((knobs, reading_weights), |_| {
             let criterion = criterion.as_ref().map_err(Clone::clone)?;
+            let (error, incidences) = criterion.error_and_by_incidence(&knobs.at);
             Ok(Errors {
-                e_percent: 100.0 * criterion.error(&knobs.at),
-                incidences: criterion.by_incidence(&knobs.at),
+                e_percent: 100.0 * error,
+                incidences,
             })
         });
     }

@@ -24,7 +24,7 @@ const ABOVE_PANEL: f32 = 7.0;
 const LEAST_APART: f64 = 34.0;
 
 /// A panel is not lower than this, in points.
-const LEAST_PANEL: f32 = 120.0;
+const LEAST_PANEL: f32 = 80.0;
 
 /// All incidences in one plot.
 pub fn together(ui: &mut Ui, plots: &Plots) {
@@ -69,7 +69,7 @@ pub fn panels(ui: &mut Ui, plots: &Plots) {
     let columns = columns(panels.len(), whole);
     let rows = panels.len().div_ceil(columns);
     let gap = ui.spacing().item_spacing;
-    let least = LEAST_PANEL * if plots.state.view.residuals { 1.5 } else { 1.0 };
+    let least = LEAST_PANEL * if plots.state.view.residuals { 2.0 } else { 1.0 };
     let size = vec2(
         (whole.x - gap.x * (columns - 1) as f32) / columns as f32,
         ((whole.y - gap.y * rows as f32) / rows as f32).max(least),
@@ -95,8 +95,9 @@ fn name_axes(ui: &mut Ui, view: &View) {
     } else {
         ""
     };
-    let names = [view.quantity.axis_name(), &view.theta_name()].join(" over ");
-    ui.label(format!("{names}{below}"));
+    let narrow = ui.available_width() < 1.5 * NARROW;
+    let [value, theta] = axis_names(view, narrow);
+    ui.label(format!("{value} over {theta}{below}"));
 }
 
 fn show_panel(ui: &mut Ui, plots: &Plots, panel: &[&Drawn], place: usize, size: Vec2) {
@@ -133,6 +134,17 @@ pub(super) fn columns(count: usize, size: Vec2) -> usize {
 
 type Group = Option<(Id, [bool; 2])>;
 
+/// The names of the axes of values and of view angles, short ones where there is little room.
+fn axis_names(view: &View, narrow: bool) -> [String; 2] {
+    let (quantity, theta) = (view.quantity, view.theta_name());
+    if narrow {
+        let theta = theta.trim_start_matches("view angle ").to_owned();
+        [quantity.short_name().to_owned(), theta]
+    } else {
+        [quantity.axis_name().to_owned(), theta]
+    }
+}
+
 /// Where a plot is, and what it shares with others.
 struct Place<'a> {
     state: &'a State,
@@ -166,12 +178,8 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
     if place.named {
         y = y.label(value);
         if lowest {
-            let name = place.state.view.theta_name();
-            x = x.label(if narrow {
-                name.trim_start_matches("view angle ")
-            } else {
-                &name
-            });
+            let [_, theta] = axis_names(&place.state.view, narrow);
+            x = x.label(theta);
         }
     }
     let mut plot = Plot::new(place.name)
@@ -198,13 +206,8 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
     let range = plots.range;
     let end = |value: f64| axis.place(value).unwrap_or(0.0);
     let lowest = !state.view.residuals;
-    let quantity = state.view.quantity;
-    let name = if place.size.x < NARROW {
-        quantity.short_name()
-    } else {
-        quantity.axis_name()
-    };
-    let plot = over_theta(place, axis, name, lowest)
+    let [name, _] = axis_names(&state.view, place.size.x < NARROW);
+    let plot = over_theta(place, axis, &name, lowest)
         .include_y(end(range.0))
         .include_y(end(range.1));
     let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {

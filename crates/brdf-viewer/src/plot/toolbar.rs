@@ -12,6 +12,9 @@ use crate::widgets::{choose, degrees, named};
 /// Draws the line, and below it what the plot cannot show.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.horizontal_wrapped(|ui| {
+        // Two lines shall do beside both panels in the smallest window.
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 3.0;
         for (command, name) in [
             (Command::Together, "Together"),
             (Command::Panels, "Panels"),
@@ -26,11 +29,10 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                 intents.push(Intent::Do(command));
             }
         }
-        ui.separator();
         let cartesian = state.view.layout != Layout::Polar;
         for (command, name) in [
             (Command::Logarithmic, "log"),
-            (Command::TimesCosine, "× cos theta"),
+            (Command::TimesCosine, "× cos θ"),
             (Command::Residuals, "residuals"),
         ] {
             let mut on = state.is_on(command) == Some(true);
@@ -40,7 +42,6 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                 intents.push(Intent::Do(command));
             }
         }
-        ui.separator();
         show_side(ui, state, intents);
         show_planes(ui, state, intents);
         if ui.button("Reset zoom").clicked() {
@@ -59,7 +60,7 @@ fn show_side(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         Side::Forward => "theta > 0: forward".to_owned(),
     };
     let mut view = state.view;
-    let combo = ComboBox::from_id_salt("side").width(120.0);
+    let combo = ComboBox::from_id_salt("side").width(110.0);
     let sides = [Side::Source, Side::Forward];
     let shown = choose(ui, combo, &mut view.theta_positive, sides, name);
     named(shown, egui::Role::ComboBox, "positive side");

@@ -135,7 +135,7 @@ fn the_quantity_and_the_side_are_chosen() {
         state.shown.curves(id)[4].readings[0]
     };
     let plain = first(&window);
-    click(&mut window, "× cos theta");
+    click(&mut window, "× cos θ");
     assert_eq!(window.state().state.view.quantity, Quantity::BrdfCosine);
     let with_cosine = first(&window);
     let expected = plain.value * plain.theta_deg.to_radians().cos();

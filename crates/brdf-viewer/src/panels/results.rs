@@ -92,10 +92,11 @@ fn result_plot<'a>(name: &str, [x, y]: [Axis; 2], [x_name, y_name]: [&str; 2]) -
         .show_crosshair(false)
 }
 
-/// Numbers along an axis are at least so far apart, in points, and clear from the second on.
+/// Numbers along an axis are at least so far apart, in points, and clear from the second on: lines of
+/// the grid between them have none.
 const NUMBERS_APART: Rangef = Rangef {
-    min: 8.0,
-    max: 12.0,
+    min: 31.0,
+    max: 36.0,
 };
 
 /// The iterations of the fit that runs, or of the last one, of the scan that is shown.

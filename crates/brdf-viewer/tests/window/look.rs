@@ -311,7 +311,11 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
         let expected = f64::from(line[0].y) + slope * (value - rho[0][1]);
         assert!((f64::from(at.y) - expected).abs() < 0.5, "{at:?}");
     }
-    assert!(numbers.len() > 5, "{numbers:?}");
+    // Evenly spaced ones, at the lines of the grid that have room for them.
+    let values: Vec<f64> = numbers.iter().map(|text| text.parse().unwrap()).collect();
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(steps.len() > 5, "{values:?}");
+    assert!(steps.iter().all(|step| *step == steps[0]), "{values:?}");
     click(&mut window, "Tables");
     assert!(shows(&window, "verdict"));
 }

@@ -253,10 +253,10 @@ pub(super) fn drawn_with_samples(
     title: &Title,
     draw: impl FnOnce(&mut Canvas) -> Result<(), PlotError>,
 ) -> Result<String, PlotError> {
-    let lines = title.samples.len();
+    let lines = u32::try_from(title.samples.len()).unwrap_or(0);
     // Half a line more, so that the last one does not stand on the border.
-    let room = if lines > 0 { lines as f64 + 0.5 } else { 0.0 } * LINES_APART;
-    drawn_above(room as u32, draw)
+    let room = if lines > 0 { 20 * lines + 10 } else { 0 };
+    drawn_above(room, draw)
 }
 
 /// A text that is not longer than so many letters: of a longer one its start and its end, where

@@ -4,7 +4,8 @@
 
 use std::collections::BTreeMap;
 
-use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+use brdf_core::evaluator::{Evaluator as _, Exact};
+use brdf_core::{AnyBrdf, Geometry, Parameters, ThreeParameterBrdf};
 use brdf_tests::{in_workspace, textbook};
 
 /// Largest relative error of f_r in units of 2^-52.
@@ -12,6 +13,9 @@ const VALUE_LIMIT: f64 = 8.0;
 
 /// Largest relative error of a derivative in units of 2^-52.
 const DERIVATIVE_LIMIT: f64 = 12.0;
+
+/// Largest relative error of f_r from a batch, in units of 2^-52.
+const BATCH_LIMIT: f64 = 16.0;
 
 struct Point {
     kind: String,
@@ -128,4 +132,18 @@ fn source_and_view_can_be_exchanged() {
         let back = brdf.value(&Geometry::new(theta, psi, phi).unwrap());
         assert!(ulps(there, back) <= 4.0);
     }
+}
+
+#[test]
+fn a_batch_from_angles_is_right_to_a_few_roundings() {
+    let mut worst: BTreeMap<String, f64> = BTreeMap::new();
+    for point in points() {
+        let [psi, theta, phi] = point.angles;
+        let brdf = ThreeParameterBrdf::new(point.parameters, point.n).unwrap();
+        let value = Exact::new(AnyBrdf::Paper(brdf)).value(psi, theta, phi);
+        let of_kind = worst.entry(point.kind).or_default();
+        *of_kind = of_kind.max(ulps(value, point.exact[0]));
+    }
+    println!("batch from angles: largest relative error in units of 2^-52: {worst:.1?}");
+    assert!(worst.values().all(|&error| error <= BATCH_LIMIT));
 }

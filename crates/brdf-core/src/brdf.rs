@@ -238,6 +238,12 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         self.value(geometry) * geometry.cos_theta
     }
 
+    /// The specular part without its shadowing, (k2/pi) f(alpha)/f(0) R0(gamma).
+    pub(crate) fn unshadowed(&self, tan2_alpha: f64, cos_gamma: f64) -> f64 {
+        let facet = self.facet.relative(tan2_alpha, (1.0 + tan2_alpha).sqrt());
+        self.k2 * FRAC_1_PI * facet * self.fresnel.relative(cos_gamma)
+    }
+
     #[inline]
     fn relative_fresnel(&self, geometry: &Geometry) -> f64 {
         let (c, c2) = (geometry.cos_gamma, geometry.cos2_gamma);
@@ -250,6 +256,10 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
 
     pub(crate) fn shadowing(&self) -> S {
         self.shadowing
+    }
+
+    pub(crate) fn set_kd(&mut self, kd: f64) {
+        self.kd = kd;
     }
 
     pub(crate) fn fresnel(&self) -> Dielectric {

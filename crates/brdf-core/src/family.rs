@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
-use crate::facet::{Beckmann, Ellipsoid, Ggx, P_DOMAIN, Power};
+use crate::facet::{Beckmann, Ellipsoid, FacetDistribution as _, Ggx, P_DOMAIN, Power};
+use crate::fresnel::Dielectric;
 use crate::shadowing::{Smith, VGroove};
 use crate::{Geometry, GeometryError};
 
@@ -73,8 +74,9 @@ impl ModelParameters {
     }
 }
 
-/// A BRDF whose family is chosen at run time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A BRDF whose family is chosen at run time. In files it is its family and its parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Described", into = "Described")]
 pub enum AnyBrdf {
     /// [`Family::Paper`].
     Paper(ThreeParameterBrdf),
@@ -86,6 +88,31 @@ pub enum AnyBrdf {
     Ggx(MicrofacetBrdf<Ggx, Smith>),
     /// [`Family::Beckmann`].
     Beckmann(MicrofacetBrdf<Beckmann, VGroove>),
+}
+
+/// A BRDF as it stands in a file.
+#[derive(Serialize, Deserialize)]
+struct Described {
+    family: Family,
+    #[serde(flatten)]
+    parameters: ModelParameters,
+}
+
+impl From<AnyBrdf> for Described {
+    fn from(brdf: AnyBrdf) -> Self {
+        Self {
+            family: brdf.family(),
+            parameters: brdf.model_parameters(),
+        }
+    }
+}
+
+impl TryFrom<Described> for AnyBrdf {
+    type Error = ParameterError;
+
+    fn try_from(described: Described) -> Result<Self, ParameterError> {
+        Self::new(described.family, &described.parameters)
+    }
 }
 
 /// The same expression for the BRDF of each family.
@@ -100,6 +127,8 @@ macro_rules! each {
         }
     };
 }
+
+pub(crate) use each;
 
 impl AnyBrdf {
     /// The BRDF of a family with its parameters.
@@ -129,6 +158,42 @@ impl AnyBrdf {
                 })?)
             }
         })
+    }
+
+    /// The parameters k2, kD and k1.
+    pub fn parameters(&self) -> Parameters {
+        each!(self, brdf => brdf.parameters())
+    }
+
+    /// All parameters.
+    pub fn model_parameters(&self) -> ModelParameters {
+        let p = each!(self, brdf => brdf.facet().p());
+        ModelParameters {
+            p,
+            ..ModelParameters::three(self.parameters(), self.fresnel().n())
+        }
+    }
+
+    /// The family.
+    pub fn family(&self) -> Family {
+        match self {
+            Self::Paper(_) => Family::Paper,
+            Self::Smith(_) => Family::Smith,
+            Self::Power(_) => Family::Power,
+            Self::Ggx(_) => Family::Ggx,
+            Self::Beckmann(_) => Family::Beckmann,
+        }
+    }
+
+    /// The Fresnel factor.
+    pub fn fresnel(&self) -> Dielectric {
+        each!(self, brdf => brdf.fresnel())
+    }
+
+    /// The same BRDF with another diffuse weight kD >= 0.
+    pub(crate) fn with_kd(mut self, kd: f64) -> Self {
+        each!(&mut self, brdf => brdf.set_kd(kd));
+        self
     }
 
     /// f_r in 1/sr.

@@ -55,6 +55,7 @@
 //! rounded in one way only: they have the same digits on every machine.
 
 pub mod brdf;
+pub mod evaluator;
 pub mod facet;
 pub mod family;
 pub mod fresnel;
@@ -65,6 +66,8 @@ mod quadrature;
 mod quotient;
 pub mod real;
 pub mod reflectance;
+pub mod sampling;
+pub mod scene;
 pub mod shadowing;
 mod trigonometry;
 
@@ -73,3 +76,4 @@ pub use family::{AnyBrdf, Family, ModelParameters};
 pub use geometry::{Geometry, GeometryError};
 pub use pair::HalfVector;
 pub use quotient::Quotient;
+pub use sampling::{Sample, Sampler};

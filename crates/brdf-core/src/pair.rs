@@ -83,6 +83,13 @@ impl<R: Real> Zenith<R> {
 }
 
 impl<R: Real> Pair<R> {
+    /// A value of these directions, NaN where one of them is not above the surface.
+    #[inline(always)]
+    pub(crate) fn if_above_surface(&self, value: R) -> R {
+        let above = (self.cos_psi > R::of(0.0)) & (self.cos_theta > R::of(0.0));
+        R::select(above, value, R::of(f64::NAN))
+    }
+
     /// From the parts of (source + view)/2, the square of that across the normal.
     #[inline(always)]
     pub(crate) fn of_half(cos_psi: R, cos_theta: R, across2: R, length2: R) -> Self {
@@ -150,18 +157,18 @@ impl<R: Real> Pair<R> {
     /// where no difference of rounded numbers is left, and both sines cost one root.
     #[inline(always)]
     pub(crate) fn from_cosines(cos_psi: R, cos_theta: R, cos_phi: R) -> Self {
-        let (zero, one) = (R::of(0.0), R::of(1.0));
-        // A cosine may be above 1 by its rounding.
-        let sin2_psi = ((one - cos_psi) * (one + cos_psi)).max(zero);
-        let sin2_theta = ((one - cos_theta) * (one + cos_theta)).max(zero);
+        let one = R::of(1.0);
+        // A cosine may be above 1 by its rounding: as far above as it could be below.
+        let sin2_psi = ((one - cos_psi) * (one + cos_psi)).abs();
+        let sin2_theta = ((one - cos_theta) * (one + cos_theta)).abs();
         let sines = (sin2_psi * sin2_theta).sqrt();
         // (sin psi + sin theta)^2, and something where both are 0.
         let sum2 = (sin2_psi + sin2_theta) + (sines + sines) + R::of(1e-30);
-        let product = (cos_theta - cos_psi) * (cos_psi + cos_theta);
-        let in_plane = R::of(0.25) * (product * product) / sum2;
-        let out_of_plane = R::of(0.5) * (sines * (one + cos_phi).max(zero));
-        let across2 = in_plane + out_of_plane;
         let along = R::of(0.5) * (cos_psi + cos_theta);
+        let product = (cos_theta - cos_psi) * along;
+        let half_sines = R::of(0.5) * sines;
+        let out_of_plane = half_sines * (one + cos_phi).abs();
+        let across2 = product * product / sum2 + out_of_plane;
         Self::of_half(cos_psi, cos_theta, across2, along.mul_add(along, across2))
     }
 

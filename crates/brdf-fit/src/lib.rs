@@ -45,6 +45,7 @@ pub mod robust;
 pub mod solver;
 pub mod stages;
 pub mod synthetic;
+pub mod trade;
 pub mod uncertainty;
 pub mod warning;
 pub mod watch;

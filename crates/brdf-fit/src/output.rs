@@ -1,7 +1,7 @@
-//! Writing a file whole or not at all.
+//! Writing a file whole or not at all, and the two streams of a command.
 
 use std::fs::{self, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// A file could not be written; what was there before is still there.
@@ -48,6 +48,48 @@ pub fn resolved(path: &Path) -> PathBuf {
             .file_name()
             .map_or_else(|| path.to_owned(), |name| folder.join(name)),
     }
+}
+
+/// An output of a command that would take the place of an input or of another output.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: is an input or another output of this command: expected a file of its own", .0.display())]
+pub struct TakenError(pub PathBuf);
+
+/// Checks that no output takes the place of an input or of another output. Pipes and devices may be
+/// named several times.
+pub fn check_outputs<'a>(
+    inputs: impl IntoIterator<Item = &'a Path>,
+    outputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), TakenError> {
+    let mut taken: Vec<PathBuf> = inputs.into_iter().map(resolved).collect();
+    for output in outputs {
+        let target = resolved(output);
+        let is_regular = !target.exists() || target.is_file();
+        if is_regular && taken.contains(&target) {
+            return Err(TakenError(output.to_owned()));
+        }
+        taken.push(target);
+    }
+    Ok(())
+}
+
+/// Prints to standard output. A reader that has seen enough (`| head`) is no error.
+pub fn print(bytes: &[u8]) -> io::Result<()> {
+    let mut output = io::stdout().lock();
+    match output.write_all(bytes).and_then(|()| output.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result,
+    }
+}
+
+/// An error line on standard error; where that is gone, nobody is there to be told.
+pub fn complain(message: &str) {
+    let name = if io::stderr().is_terminal() {
+        "\x1b[1;31merror:\x1b[0m"
+    } else {
+        "error:"
+    };
+    let _ = writeln!(io::stderr(), "{name} {message}");
 }
 
 fn folder_of(path: &Path) -> &Path {

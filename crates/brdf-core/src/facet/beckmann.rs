@@ -54,4 +54,14 @@ impl FacetDistribution for Beckmann {
     fn peak_density(&self) -> f64 {
         FRAC_1_PI * self.reciprocal_k1_squared
     }
+
+    /// -k1^2 ln(1 - u) (Walter et al., EGSR 2007, eq. 28).
+    fn sample_tan2_alpha(&self, u: f64) -> f64 {
+        -(self.k1 * self.k1) * (-u).ln_1p()
+    }
+
+    /// p(alpha) = f(alpha) cos alpha.
+    fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        self.peak_density() * self.relative(tan2_alpha, sec_alpha) / sec_alpha
+    }
 }

@@ -1,6 +1,6 @@
 //! The paper's distribution of facet normals, eq. (2).
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::FacetDistribution;
 use crate::pair::HalfVector;
@@ -12,7 +12,7 @@ use crate::real::Real;
 ///
 /// ```text
 /// f(alpha) / f(0) = k1^2 cos alpha / (1 + (k1^2 - 1) cos^2 alpha)
-///                 = k1^2 sec alpha / (tan^2 alpha + k1^2)
+///                 = sec alpha / (tan^2 alpha / k1^2 + 1)
 /// ```
 ///
 /// A small k1 is a narrow lobe, k1 = 1 the sphere cos alpha. The second form has no difference
@@ -21,6 +21,7 @@ use crate::real::Real;
 pub struct Ellipsoid {
     k1: f64,
     k1_squared: f64,
+    reciprocal_k1_squared: f64,
 }
 
 impl Ellipsoid {
@@ -31,6 +32,7 @@ impl Ellipsoid {
         Self {
             k1,
             k1_squared: k1 * k1,
+            reciprocal_k1_squared: 1.0 / (k1 * k1),
         }
     }
 }
@@ -42,11 +44,12 @@ impl FacetDistribution for Ellipsoid {
 
     #[inline]
     fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
-        let k1_squared = R::of(self.k1_squared);
         let along2 = half.along * half.along;
         Quotient {
-            numerator: k1_squared * (half.along * half.length),
-            denominator: k1_squared.mul_add(along2, half.across2),
+            numerator: half.along * half.length,
+            denominator: half
+                .across2
+                .mul_add(R::of(self.reciprocal_k1_squared), along2),
         }
     }
 
@@ -77,6 +80,38 @@ impl FacetDistribution for Ellipsoid {
             self.k1_squared / -deviation * (1.0 - root.atan() / root)
         };
         1.0 / (TAU * integral)
+    }
+
+    /// With L = ln k1^2,
+    ///
+    /// ```text
+    /// tan^2 alpha = k1^2 (1 - e^(-u L)) / (e^((1-u) L) - 1),   u/(1-u) at k1 = 1
+    /// ```
+    ///
+    /// since the density of t = tan^2 alpha is a multiple of 1/((1 + t)(k1^2 + t)), so that
+    /// u L = ln(k1^2 (1 + t)/(k1^2 + t)).
+    fn sample_tan2_alpha(&self, u: f64) -> f64 {
+        let logarithm = self.k1_squared.ln();
+        if logarithm == 0.0 {
+            return u / (1.0 - u);
+        }
+        let above = -(-u * logarithm).exp_m1();
+        self.k1_squared * above / ((1.0 - u) * logarithm).exp_m1()
+    }
+
+    /// ```text
+    /// p(alpha) = f(alpha)/f(0) / N,   N = pi k1^2 ln(k1^2) / (k1^2 - 1),   pi at k1 = 1
+    /// ```
+    fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        // Next to k1 = 1 the difference is exact, and so is the logarithm of the same number.
+        let deviation = self.k1_squared - 1.0;
+        let mean_logarithm = if deviation == 0.0 {
+            1.0
+        } else {
+            self.k1_squared.ln() / deviation
+        };
+        let total = PI * self.k1_squared * mean_logarithm;
+        self.relative(tan2_alpha, sec_alpha) / total
     }
 }
 

@@ -59,4 +59,14 @@ impl FacetDistribution for Ggx {
     fn peak_density(&self) -> f64 {
         FRAC_1_PI / self.k1_squared
     }
+
+    /// k1^2 u/(1-u) (Walter et al., EGSR 2007, eq. 35).
+    fn sample_tan2_alpha(&self, u: f64) -> f64 {
+        self.k1_squared * (u / (1.0 - u))
+    }
+
+    /// p(alpha) = f(alpha) cos alpha.
+    fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        self.peak_density() * self.relative(tan2_alpha, sec_alpha) / sec_alpha
+    }
 }

@@ -41,9 +41,30 @@ pub trait FacetDistribution: Copy + Send + Sync {
         0.0
     }
 
+    /// The exponent p; 1 for a distribution without one.
+    fn p(&self) -> f64 {
+        1.0
+    }
+
     /// f(0) in 1/sr, from the normalisation: the integral of f(alpha) cos alpha over the
     /// hemisphere of facet normals is 1.
     fn peak_density(&self) -> f64;
+
+    /// tan^2 alpha of a facet normal drawn for [sampling](crate::sampling), from u in [0, 1): the
+    /// inverse of the distribution function of
+    /// [`sampling_density`](Self::sampling_density), 0 at u = 0 and ascending with it.
+    ///
+    /// ```text
+    /// u = integral of pi p(alpha) / (1 + t)^(3/2) dt over t = tan^2 alpha from 0 to the value
+    /// ```
+    ///
+    /// since sin alpha d alpha is 1/2 dt / (1 + t)^(3/2).
+    fn sample_tan2_alpha(&self, u: f64) -> f64;
+
+    /// The density p(alpha) of the facet normals that are drawn, in 1/sr: proportional to
+    /// f(alpha), or to f(alpha) cos alpha where only that has a closed inverse. Its integral over
+    /// the hemisphere of facet normals is 1.
+    fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64;
 }
 
 #[cfg(test)]
@@ -53,6 +74,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::quadrature::integrate;
 
     const LAWS: [&str; 4] = ["ellipsoid", "power", "ggx", "beckmann"];
 
@@ -72,6 +94,55 @@ mod tests {
             "power" => all(Power::new(k1, p), alpha),
             "ggx" => all(Ggx::new(k1), alpha),
             _ => all(Beckmann::new(k1), alpha),
+        }
+    }
+
+    /// tan^2 alpha drawn from u.
+    fn drawn(law: &str, k1: f64, p: f64, u: f64) -> f64 {
+        match law {
+            "ellipsoid" => Ellipsoid::new(k1).sample_tan2_alpha(u),
+            "power" => Power::new(k1, p).sample_tan2_alpha(u),
+            "ggx" => Ggx::new(k1).sample_tan2_alpha(u),
+            _ => Beckmann::new(k1).sample_tan2_alpha(u),
+        }
+    }
+
+    /// The fraction of the facet normals that are drawn with a tilt between two, given by
+    /// tan^2 alpha, by quadrature in v, tan alpha = w sinh v.
+    fn fraction_between(law: &str, k1: f64, p: f64, tan2_alpha: [f64; 2]) -> f64 {
+        fn of(facet: impl FacetDistribution, [from, to]: [f64; 2]) -> f64 {
+            let width = facet.k1().min(1.0);
+            let ring = |v: f64| {
+                let (sinh, cosh) = (v.sinh(), v.cosh());
+                let t = (width * sinh).powi(2);
+                let sec = (1.0 + t).sqrt();
+                let area = width * width * sinh * cosh / (sec * (1.0 + t));
+                TAU * facet.sampling_density(t, sec) * area
+            };
+            let [from, to] = [from, to].map(|t| (t.sqrt() / width).asinh());
+            let breaks = std::array::from_fn::<f64, 9, _>(|i| from + (to - from) * i as f64 / 8.0);
+            integrate(&ring, breaks, 1e-11)
+        }
+        match law {
+            "ellipsoid" => of(Ellipsoid::new(k1), tan2_alpha),
+            "power" => of(Power::new(k1, p), tan2_alpha),
+            "ggx" => of(Ggx::new(k1), tan2_alpha),
+            _ => of(Beckmann::new(k1), tan2_alpha),
+        }
+    }
+
+    #[test]
+    fn the_limits_of_the_drawn_tilts_have_no_step() {
+        for u in [1e-6, 0.3, 0.999_999] {
+            for (k1, p, beside) in [(0.3, 1.0, 1e-9), (1.0, 1.0, 1e-9), (1.0, 3.0, 1e-9)] {
+                let at = |k1, p| drawn("power", k1, p, u);
+                let limit = at(k1, p);
+                for near in [at(k1 * (1.0 + beside), p), at(k1, p * (1.0 - beside))] {
+                    assert!((near / limit - 1.0).abs() < 1e-7, "{k1} {p} {u}");
+                }
+            }
+            let ellipsoid = drawn("ellipsoid", 1.0, 1.0, u);
+            assert!((ellipsoid / (u / (1.0 - u)) - 1.0).abs() < 1e-15);
         }
     }
 
@@ -141,6 +212,41 @@ mod tests {
                 prop_assert!((by_k1 - difference).abs() < 1e-6 * scale, "{law}");
                 let difference = (at(k1, p + q) - at(k1, p - q)) / (2.0 * q);
                 prop_assert!((by_p - difference).abs() < 1e-6 * (1.0 + by_p.abs()), "{law}");
+            }
+        }
+
+        #[test]
+        fn tilts_are_drawn_with_their_density(
+            log_k1 in -9.2..6.9_f64, p in prop_oneof![Just(1.0), 0.1..16.0_f64], u in 1e-6..0.999,
+        ) {
+            let k1 = log_k1.exp();
+            for law in LAWS {
+                let below = fraction_between(law, k1, p, [0.0, drawn(law, k1, p, u)]);
+                prop_assert!((below / u - 1.0).abs() < 1e-8, "{law}: {below}");
+            }
+        }
+
+        #[test]
+        fn steep_tilts_are_drawn_with_their_density(
+            log_k1 in -9.2..6.9_f64, p in prop_oneof![Just(1.0), 0.1..16.0_f64], log_rest in -20.0..-1.0_f64,
+        ) {
+            let (k1, rest) = (log_k1.exp(), log_rest.exp());
+            for law in LAWS {
+                let between = [0.25, 0.75].map(|part| drawn(law, k1, p, 1.0 - part * rest));
+                let fraction = fraction_between(law, k1, p, [between[1], between[0]]);
+                prop_assert!((fraction / (0.5 * rest) - 1.0).abs() < 1e-6, "{law}: {fraction} {rest}");
+            }
+        }
+
+        #[test]
+        fn drawn_tilts_are_finite_and_ascend(
+            log_k1 in -18.4..18.4_f64, p in 0.1..16.0_f64, u in 0.0..1.0_f64, step in 1e-6..1e-3,
+        ) {
+            let k1 = log_k1.exp();
+            for law in LAWS {
+                let at = |u: f64| drawn(law, k1, p, u.min(1.0 - f64::EPSILON / 2.0));
+                prop_assert!(at(0.0) == 0.0 && at(1.0).is_finite(), "{law}: {}", at(1.0));
+                prop_assert!(at(u) >= 0.0 && at(u) <= at(u + step), "{law}: {}", at(u));
             }
         }
 

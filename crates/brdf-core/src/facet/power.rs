@@ -1,6 +1,6 @@
 //! The paper's distribution with its exponent set free.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::FacetDistribution;
 use crate::pair::HalfVector;
@@ -37,11 +37,6 @@ impl Power {
         }
     }
 
-    /// The exponent p.
-    pub fn p(&self) -> f64 {
-        self.p
-    }
-
     /// ln(k1^2 / (sin^2 alpha + k1^2 cos^2 alpha)), without a loss of digits next to the peak:
     /// the fraction is 1 + (k1^2 - 1) tan^2 alpha / (tan^2 alpha + k1^2).
     #[inline]
@@ -51,13 +46,21 @@ impl Power {
         let excess = R::of(self.k1_squared - 1.0) * (half.across2 / denominator);
         let fraction = k1_squared * half.length2 / denominator;
         let next_to_the_peak = excess.abs() < R::of(0.5);
-        R::select(next_to_the_peak, excess.ln_1p(), fraction.ln())
+        let (zero, one) = (R::of(0.0), R::of(1.0));
+        let fraction = R::select(next_to_the_peak, one + excess, fraction);
+        // What the rounding of 1 + excess took away.
+        let rest = (excess - (fraction - one)) / fraction;
+        fraction.ln() + R::select(next_to_the_peak, rest, zero)
     }
 }
 
 impl FacetDistribution for Power {
     fn k1(&self) -> f64 {
         self.k1
+    }
+
+    fn p(&self) -> f64 {
+        self.p
     }
 
     #[inline]
@@ -98,4 +101,54 @@ impl FacetDistribution for Power {
         let breaks = std::array::from_fn::<f64, 9, _>(|i| end * (i as f64 / 8.0));
         1.0 / (TAU * integrate(&ring, breaks, 1e-10))
     }
+
+    /// With L = ln k1^2, s = 1 - p and t = tan^2 alpha, the fraction
+    /// q = (k1^2 + t)/(k1^2 (1 + t)) goes from 1 to 1/k1^2. dq is a multiple of dt / (1 + t)^2, and
+    /// the density of t one of q^(-p) / (1 + t)^2, so that u is linear in q^s:
+    ///
+    /// ```text
+    /// q^s = 1 + u (e^(-s L) - 1),   q^s k1^(2s) = 1 + (1 - u)(e^(s L) - 1)
+    /// tan^2 alpha = k1^2 (q - 1) / (1 - k1^2 q),   u/(1-u) at k1 = 1
+    /// ```
+    ///
+    /// and ln q = -u L for p = 1. Each difference is taken from a logarithm of its own: ln q, and
+    /// ln(k1^2 q), which is small where u is next to 1.
+    fn sample_tan2_alpha(&self, u: f64) -> f64 {
+        let logarithm = self.k1_squared.ln();
+        if logarithm == 0.0 {
+            return u / (1.0 - u);
+        }
+        let s = 1.0 - self.p;
+        let fraction = ln_1p_over(s, u * exp_m1_over(s, -logarithm));
+        let rest = ln_1p_over(s, (1.0 - u) * exp_m1_over(s, logarithm));
+        self.k1_squared * (fraction.exp_m1() / -rest.exp_m1())
+    }
+
+    /// With the exponent p,
+    ///
+    /// ```text
+    /// p(alpha) = f(alpha)/f(0) / N,   N = pi k1^(2p) (1 - k1^(2(1-p))) / ((1 - k1^2)(1 - p))
+    /// ```
+    ///
+    /// N goes to pi k1^2 ln(k1^2) / (k1^2 - 1) at p = 1, and to pi at k1 = 1.
+    fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
+        let logarithm = self.k1_squared.ln();
+        let total = if logarithm == 0.0 {
+            PI
+        } else {
+            let mean_power = exp_m1_over(1.0 - self.p, logarithm) / (self.k1_squared - 1.0);
+            PI * (self.p * logarithm).exp() * mean_power
+        };
+        self.relative(tan2_alpha, sec_alpha) / total
+    }
+}
+
+/// (e^(s x) - 1)/s, which is x at s = 0: the integral of e^(s y) over y from 0 to x.
+fn exp_m1_over(s: f64, x: f64) -> f64 {
+    if s == 0.0 { x } else { (s * x).exp_m1() / s }
+}
+
+/// ln(1 + s x)/s, which is x at s = 0: the inverse of [`exp_m1_over`].
+fn ln_1p_over(s: f64, x: f64) -> f64 {
+    if s == 0.0 { x } else { (s * x).ln_1p() / s }
 }

@@ -96,12 +96,6 @@ pub trait Real:
     fn ln(self) -> Self {
         elementary::ln(self)
     }
-
-    /// ln(1 + self), accurate also where self is small.
-    #[inline(always)]
-    fn ln_1p(self) -> Self {
-        elementary::ln_1p(self)
-    }
 }
 
 impl<T: Primitive> Real for T {
@@ -123,10 +117,10 @@ impl<T: Primitive> Real for T {
     }
 }
 
-/// The polynomial of the coefficients, lowest first, by Horner's scheme.
+/// The polynomial of the coefficients, lowest first, by Horner's scheme. There is at least one.
 #[inline(always)]
 pub(crate) fn horner<R: Real>(x: R, coefficients: &[f64]) -> R {
-    let highest_first = coefficients.iter().rev();
-    let first = R::of(0.0);
-    highest_first.fold(first, |sum, &c| sum.mul_add(x, R::of(c)))
+    let highest = R::of(coefficients[coefficients.len() - 1]);
+    let others = coefficients[..coefficients.len() - 1].iter().rev();
+    others.fold(highest, |sum, &c| sum.mul_add(x, R::of(c)))
 }

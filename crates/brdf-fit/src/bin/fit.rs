@@ -1,12 +1,12 @@
 //! The command line: fits goniometer scans and prints, or writes, what came out.
 
-use std::io::{self, IsTerminal, Write};
+use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use brdf_fit::energy::USUAL_LIMIT_DEG;
 use brdf_fit::model::{Held, Model};
-use brdf_fit::output::{resolved, write_file};
+use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file};
 use brdf_fit::read::{Convention, ReadError, Side};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
@@ -272,22 +272,11 @@ impl Arguments {
     }
 
     /// No output takes the place of an input or of another output.
-    fn check_outputs(&self) -> Result<(), String> {
+    fn check_outputs(&self) -> Result<(), TakenError> {
         let inputs = self.files.iter().chain(&self.again);
-        let mut taken: Vec<PathBuf> = inputs.map(|file| resolved(file)).collect();
         let page = self.plot.as_ref().map(|folder| folder.join(PAGE));
-        for output in [&self.json, &self.curves, &page].into_iter().flatten() {
-            let target = resolved(output);
-            let is_regular = !target.exists() || target.is_file();
-            if is_regular && taken.contains(&target) {
-                return Err(format!(
-                    "{}: is an input or another output of this command: expected a file of its own",
-                    output.display()
-                ));
-            }
-            taken.push(target);
-        }
-        Ok(())
+        let outputs = [&self.json, &self.curves, &page].into_iter().flatten();
+        check_outputs(inputs.map(PathBuf::as_path), outputs.map(PathBuf::as_path))
     }
 
     /// What `--again` names.
@@ -325,8 +314,8 @@ impl From<Outcome> for ExitCode {
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
-    if let Err(message) = arguments.check_outputs() {
-        complain(&message);
+    if let Err(error) = arguments.check_outputs() {
+        complain(&error.to_string());
         return Outcome::BadUsageOrFile.into();
     }
     let document = match arguments.document() {
@@ -487,7 +476,7 @@ fn deliver(
     }
 }
 
-/// Prints to standard output. A reader that has seen enough (`| head`) is no error.
+/// Prints to standard output.
 fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
     let mut buffer = Vec::new();
     if arguments.params_only {
@@ -500,19 +489,5 @@ fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
         let texts: Vec<String> = reports.iter().map(Report::text).collect();
         buffer.extend(texts.join("\n").bytes());
     }
-    let mut output = io::stdout().lock();
-    match output.write_all(&buffer).and_then(|()| output.flush()) {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result,
-    }
-}
-
-/// An error line on standard error; where that is gone, nobody is there to be told.
-fn complain(message: &str) {
-    let name = if io::stderr().is_terminal() {
-        "\x1b[1;31merror:\x1b[0m"
-    } else {
-        "error:"
-    };
-    let _ = writeln!(io::stderr(), "{name} {message}");
+    output::print(&buffer)
 }

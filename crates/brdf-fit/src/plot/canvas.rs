@@ -25,7 +25,7 @@ pub(super) struct Canvas<'a> {
 }
 
 /// Where a text stands from its place.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Stands {
     Right,
     Left,

@@ -29,6 +29,7 @@ mod canvas;
 mod clip;
 mod curves;
 mod frame;
+mod labels;
 mod palette;
 mod paper;
 mod polar;
@@ -40,6 +41,7 @@ mod selection;
 mod style;
 mod theory;
 mod title;
+mod trade;
 mod view;
 mod write;
 
@@ -59,6 +61,7 @@ pub use curves::{Curve, Reading, Theory, curves, theory_curves, value_range};
 pub use palette::{FAMILIES, Ground, MarkShape, colour, family_colour, mark};
 pub use paper::paper_figures;
 pub use selection::{Selection, Trace};
+pub use trade::{TradePoint, trade_picture};
 pub use view::{Layout, Quantity, Scale, View};
 pub use write::write_figures;
 

@@ -50,7 +50,7 @@ fn sample(measurements: &Measurements) -> String {
     )
 }
 
-fn shortened(name: &str) -> String {
+pub(super) fn shortened(name: &str) -> String {
     if name.chars().count() <= LONGEST {
         return name.to_owned();
     }

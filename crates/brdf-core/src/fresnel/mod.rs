@@ -1,5 +1,9 @@
 //! The Fresnel factor of a dielectric facet.
 
+mod polynomial;
+
+pub use polynomial::FresnelPolynomial;
+
 use crate::quotient::Quotient;
 use crate::real::Real;
 
@@ -85,10 +89,11 @@ impl Dielectric {
     fn terms<R: Real>(&self, cos_gamma: R, cos2_gamma: R) -> Terms<R> {
         let n2_minus_1 = R::of(self.n2_minus_1);
         let sum = (n2_minus_1 + cos2_gamma).sqrt() + cos_gamma;
+        let square = (cos_gamma + cos_gamma).mul_add(sum, n2_minus_1);
         Terms {
             sum,
-            square: (cos_gamma + cos_gamma).mul_add(sum, n2_minus_1),
-            numerator: sum * cos_gamma.mul_add(sum, R::of(-1.0)),
+            square,
+            numerator: cos_gamma.mul_add(square, -sum),
             denominator: cos_gamma.mul_add(n2_minus_1, sum),
         }
     }
@@ -124,7 +129,7 @@ struct Terms<R> {
     sum: R,
     /// (g + c)^2 = n^2 - 1 + 2 c (g + c).
     square: R,
-    /// The numerator of b times g + c: (g + c)(c (g + c) - 1).
+    /// The numerator of b times g + c: c (g + c)^2 - (g + c).
     numerator: R,
     /// The denominator of b times g + c: c (n^2 - 1) + g + c.
     denominator: R,

@@ -1,0 +1,104 @@
+//! The model in `f32` with a polynomial for its Fresnel factor.
+
+use super::vector::{Formula, evaluate, native, rounded};
+use super::{Evaluator, LengthError, Points, Precision};
+use crate::AnyBrdf;
+use crate::brdf::MicrofacetBrdf;
+use crate::facet::FacetDistribution;
+use crate::family::each;
+use crate::fresnel::{FresnelFactor, FresnelPolynomial};
+use crate::pair::Pair;
+use crate::real::Real;
+use crate::shadowing::Shadowing;
+
+/// Coefficients of the two polynomials that there are: that of the lower degree is taken where its
+/// error allows.
+const FEW: usize = 7;
+const MANY: usize = 11;
+
+/// The model in `f32`, with a polynomial in cos gamma for the Fresnel factor instead of its root and
+/// its quotients. How much that changes f_r at the most is [known](Self::fresnel_error_bound).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedFresnel {
+    brdf: AnyBrdf,
+    polynomial: Polynomial,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Polynomial {
+    Few(FresnelPolynomial<FEW>),
+    Many(FresnelPolynomial<MANY>),
+}
+
+impl FittedFresnel {
+    /// An evaluator whose Fresnel factor has a relative error of at most `tolerance` for cos gamma
+    /// in [`least_cos_gamma`, 1]; `None` where no polynomial of at most ten degrees has: for n near
+    /// 1, whose R0 rises too steeply towards grazing.
+    pub fn new(brdf: AnyBrdf, least_cos_gamma: f64, tolerance: f64) -> Option<Self> {
+        let fresnel = brdf.fresnel();
+        let few = FresnelPolynomial::new(&fresnel, least_cos_gamma);
+        let polynomial = if few.error_bound() <= tolerance {
+            Polynomial::Few(few)
+        } else {
+            let many = FresnelPolynomial::new(&fresnel, least_cos_gamma);
+            if many.error_bound() > tolerance {
+                return None;
+            }
+            Polynomial::Many(many)
+        };
+        Some(Self { brdf, polynomial })
+    }
+
+    /// The largest relative error of the polynomial in place of the Fresnel factor.
+    pub fn fresnel_error_bound(&self) -> f64 {
+        match &self.polynomial {
+            Polynomial::Few(polynomial) => polynomial.error_bound(),
+            Polynomial::Many(polynomial) => polynomial.error_bound(),
+        }
+    }
+
+    fn evaluate(&self, points: &Points<f32>, out: &mut [f32]) {
+        each!(self.brdf, brdf => match self.polynomial {
+            Polynomial::Few(fresnel) => evaluate(WithFresnel { brdf, fresnel }, points, out),
+            Polynomial::Many(fresnel) => evaluate(WithFresnel { brdf, fresnel }, points, out),
+        });
+    }
+}
+
+/// A BRDF with another Fresnel factor.
+#[derive(Clone, Copy)]
+struct WithFresnel<B, X> {
+    brdf: B,
+    fresnel: X,
+}
+
+impl<F: FacetDistribution, S: Shadowing, X: FresnelFactor> Formula
+    for WithFresnel<MicrofacetBrdf<F, S>, X>
+{
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "as all that is vector code")]
+    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
+        let half = &pair.half;
+        let fresnel = self.fresnel.quotient(half.length, half.length2);
+        let (psi, theta) = (pair.cos_psi, pair.cos_theta);
+        [pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))]
+    }
+}
+
+impl Evaluator for FittedFresnel {
+    fn name(&self) -> &'static str {
+        "f32-fitted-fresnel"
+    }
+
+    fn precision(&self) -> Precision {
+        Precision::Single
+    }
+
+    fn values(&self, points: &Points<f64>, out: &mut [f64]) -> Result<(), LengthError> {
+        rounded(points, out, |points, out| self.evaluate(points, out))
+    }
+
+    fn values_f32(&self, points: &Points<f32>, out: &mut [f32]) -> Result<(), LengthError> {
+        native(points, out, |points, out| self.evaluate(points, out))
+    }
+}

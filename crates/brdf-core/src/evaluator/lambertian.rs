@@ -1,0 +1,48 @@
+//! The Lambertian part alone.
+
+use std::f64::consts::FRAC_1_PI;
+
+use super::vector::{Formula, evaluate, native};
+use super::{Evaluator, LengthError, Points, Precision};
+use crate::pair::Pair;
+use crate::real::Real;
+
+/// One value, kD/pi, everywhere above the surface: for surfaces without a specular part, and for
+/// ranges of angles in which it is not to be seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lambertian {
+    kd: f64,
+}
+
+impl Lambertian {
+    /// An evaluator of a surface of the diffuse weight kD.
+    pub fn new(kd: f64) -> Self {
+        Self { kd }
+    }
+}
+
+impl Formula for Lambertian {
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "as all that is vector code")]
+    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
+        [pair.if_above_surface(R::of(self.kd * FRAC_1_PI))]
+    }
+}
+
+impl Evaluator for Lambertian {
+    fn name(&self) -> &'static str {
+        "lambertian"
+    }
+
+    fn precision(&self) -> Precision {
+        Precision::Single
+    }
+
+    fn values(&self, points: &Points<f64>, out: &mut [f64]) -> Result<(), LengthError> {
+        native(points, out, |points, out| evaluate(*self, points, out))
+    }
+
+    fn values_f32(&self, points: &Points<f32>, out: &mut [f32]) -> Result<(), LengthError> {
+        native(points, out, |points, out| evaluate(*self, points, out))
+    }
+}

@@ -51,6 +51,12 @@ pub fn fit_command() -> Command {
     Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "fit")))
 }
 
+/// The program `trade`, to be started.
+pub fn trade_command() -> Command {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "trade")))
+}
+
 /// The program `viewer`, to be started.
 pub fn viewer_command() -> Command {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();

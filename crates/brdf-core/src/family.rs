@@ -90,6 +90,12 @@ pub enum AnyBrdf {
     Beckmann(MicrofacetBrdf<Beckmann, VGroove>),
 }
 
+impl From<ThreeParameterBrdf> for AnyBrdf {
+    fn from(brdf: ThreeParameterBrdf) -> Self {
+        Self::Paper(brdf)
+    }
+}
+
 /// A BRDF as it stands in a file.
 #[derive(Serialize, Deserialize)]
 struct Described {

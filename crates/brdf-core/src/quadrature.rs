@@ -25,8 +25,9 @@ const NODES: [(f64, f64, f64); 7] = [
 ];
 const CENTRE: (f64, f64) = (0.209_482_141_084_727_82, 0.417_959_183_673_469_4);
 
-/// Halvings of one panel before its estimate is taken as it is; far more than a kink needs.
-const MAX_HALVINGS: u32 = 40;
+/// Halvings of one integral before the estimates are taken as they are: ten times what a peak and
+/// its kinks need. Where an integral has no end, it must not take for ever.
+const MAX_HALVINGS: u32 = 500;
 
 /// The integral of a non-negative function over the panels between ascending `breaks`.
 ///
@@ -46,9 +47,10 @@ pub(crate) fn integrate<const N: usize>(
         }
     }
     let allowed = tolerance * panels.iter().map(|panel| panel.estimate).sum::<f64>();
+    let mut left = MAX_HALVINGS;
     panels
         .iter()
-        .map(|panel| panel.refined(f, allowed, MAX_HALVINGS))
+        .map(|panel| panel.refined(f, allowed, &mut left))
         .sum()
 }
 
@@ -72,12 +74,13 @@ impl Panel {
         }
     }
 
-    fn refined(&self, f: &impl Fn(f64) -> f64, allowed: f64, halvings: u32) -> f64 {
-        if self.error <= allowed || halvings == 0 {
+    fn refined(&self, f: &impl Fn(f64) -> f64, allowed: f64, left: &mut u32) -> f64 {
+        if self.error <= allowed || *left == 0 {
             return self.estimate;
         }
+        *left -= 1;
         let middle = 0.5 * (self.from + self.to);
-        let half = |from, to| Self::new(f, from, to).refined(f, 0.5 * allowed, halvings - 1);
+        let mut half = |from, to| Self::new(f, from, to).refined(f, 0.5 * allowed, left);
         half(self.from, middle) + half(middle, self.to)
     }
 }

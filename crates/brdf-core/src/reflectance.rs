@@ -323,6 +323,13 @@ mod tests {
     }
 
     #[test]
+    fn an_integral_without_an_end_does_not_take_for_ever() {
+        // At n = 1 the Fresnel factor has no bound at grazing.
+        let brdf = ThreeParameterBrdf::new(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.0).unwrap();
+        assert!(brdf.hemispherical_reflectance(FRAC_PI_2, 1e-3).unwrap() > 1e6);
+    }
+
+    #[test]
     fn an_incidence_outside_the_domain_is_refused() {
         let brdf = published("001", 0.91);
         assert_eq!(

@@ -28,7 +28,12 @@ use serde::Serialize;
 /// scan cannot be fitted (what was measured is delivered), 2 for bad usage, unreadable input or
 /// output that cannot be written.
 #[derive(Parser)]
-#[command(name = "trade", version, max_term_width = 100, args_conflicts_with_subcommands = true)]
+#[command(
+    name = "trade",
+    version,
+    max_term_width = 100,
+    args_conflicts_with_subcommands = true
+)]
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
@@ -70,7 +75,12 @@ struct Evaluation {
     in_plane: bool,
 
     /// How the scene gives its points
-    #[arg(long, value_enum, value_name = "COORDINATES", default_value = "cosines")]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "COORDINATES",
+        default_value = "cosines"
+    )]
     coordinates: CoordinatesArgument,
 
     /// The largest relative error of f_r
@@ -144,7 +154,10 @@ impl FromStr for Row {
         let words: Vec<&str> = text.split_whitespace().collect();
         let row = PUBLISHED.iter().find(|row| name(row) == words.join(" "));
         let row = row.ok_or_else(|| {
-            let names: Vec<String> = PUBLISHED.iter().map(|row| format!("\"{}\"", name(row))).collect();
+            let names: Vec<String> = PUBLISHED
+                .iter()
+                .map(|row| format!("\"{}\"", name(row)))
+                .collect();
             format!("expected one of {}", names.join(", "))
         })?;
         let brdf = ThreeParameterBrdf::new(row.parameters, row.n).map_err(|e| e.to_string())?;
@@ -223,7 +236,9 @@ impl Evaluation {
         };
         let document = Document::read(path).map_err(|error| error.to_string())?;
         let fits = document.reports.iter();
-        let found = fits.filter_map(|report| Some((report, report.fit.as_ref()?))).next();
+        let found = fits
+            .filter_map(|report| Some((report, report.fit.as_ref()?)))
+            .next();
         let (report, fit) = found.ok_or_else(|| format!("{}: holds no fit", path.display()))?;
         let at = ModelParameters {
             p: fit.p,
@@ -231,7 +246,9 @@ impl Evaluation {
         };
         let brdf = AnyBrdf::new(fit.options.model.family(), &at)
             .map_err(|error| format!("{}: {error}", path.display()))?;
-        let wavelength = fit.wavelength_um.map_or_else(String::new, |w| format!(", {w} um"));
+        let wavelength = fit
+            .wavelength_um
+            .map_or_else(String::new, |w| format!(", {w} um"));
         Ok((format!("{}{wavelength}", report.file), brdf))
     }
 
@@ -290,7 +307,9 @@ fn compare_fits(fitting: &Fitting) -> Outcome {
         .iter()
         .map(|trade| (trade.wavelength_um.filter(|_| several), trade.figure()));
     let csv = |writer: &mut dyn Write| write_fit_trades(&trades, writer);
-    fitting.outputs.deliver(&texts.join("\n"), &trades, csv, figures)?;
+    fitting
+        .outputs
+        .deliver(&texts.join("\n"), &trades, csv, figures)?;
     Ok(!failed)
 }
 
@@ -326,8 +345,16 @@ impl Outputs {
             }
         }
         let printed = output::print(text.as_bytes());
-        failed.extend(printed.err().map(|error| format!("standard output: {error}")));
-        if failed.is_empty() { Ok(()) } else { Err(failed) }
+        failed.extend(
+            printed
+                .err()
+                .map(|error| format!("standard output: {error}")),
+        );
+        if failed.is_empty() {
+            Ok(())
+        } else {
+            Err(failed)
+        }
     }
 }
 
@@ -343,6 +370,8 @@ fn named(path: &Path, wavelength_um: Option<f64>) -> PathBuf {
         return path.to_owned();
     };
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let extension = path.extension().map_or_else(String::new, |e| format!(".{}", e.display()));
+    let extension = path
+        .extension()
+        .map_or_else(String::new, |e| format!(".{}", e.display()));
     path.with_file_name(format!("{stem}_{wavelength_um}um{extension}"))
 }

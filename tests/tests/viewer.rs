@@ -149,6 +149,43 @@ fn a_screenshot_needs_no_display() {
 }
 
 #[test]
+fn a_screenshot_does_not_take_the_place_of_a_scan() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("paint.csv");
+    let fit = folder.path().join("fit.json");
+    let text = std::fs::read(in_workspace("data/measured/z307_on_aluminium.csv")).unwrap();
+    std::fs::write(&scan, &text).unwrap();
+    let fitted = fit_command()
+        .arg(&scan)
+        .args(["--n", "1.5", "--json"])
+        .arg(&fit)
+        .output();
+    assert!(fitted.unwrap().status.success());
+    let [scan, fit] = [&scan, &fit].map(|path| path.to_str().unwrap());
+    // Its own, and that of a fit.
+    for (file, picture) in [(scan, scan), (fit, fit), (fit, scan)] {
+        let before = std::fs::read(picture).unwrap();
+        let output = viewer(&[file, "--screenshot", picture, "--size", "900x600"]);
+        assert_eq!(output.status.code(), Some(2));
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(message.contains("is an input of this command"), "{message}");
+        assert_eq!(std::fs::read(picture).unwrap(), before);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_screenshot_that_cannot_be_written_is_told_by_its_own_name() {
+    let output = viewer(&["--screenshot", "/proc/a.png", "--size", "900x600"]);
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        message.contains("/proc/a.png: cannot be written"),
+        "{message}"
+    );
+    assert!(!message.contains(".tmp"), "{message}");
+}
+
+#[test]
 fn bad_usage_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("window.png");
@@ -157,6 +194,10 @@ fn bad_usage_is_told() {
         (["--size", "10x10"].as_slice(), "900x600"),
         (&["--size", "wide"], "WIDTHxHEIGHT"),
         (&["--scale", "99"], "0.5 to 4"),
+        (
+            &["--size", "8192x8192", "--scale", "4", "--screenshot", path],
+            "--size 8192x8192 with --scale 4: 1074 million pixels: expected 67 million at most",
+        ),
         (&["--model", "phong"], "expected one of"),
         (
             &["/no/such/scan.csv", "--screenshot", path],

@@ -7,6 +7,7 @@ use brdf_core::fresnel::Dielectric;
 use brdf_core::shadowing::{Shadowing, Smith, VGroove};
 use brdf_core::{Family, GeometryError, ModelParameters};
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurements;
@@ -322,19 +323,32 @@ impl Criterion {
 
     /// E of each incidence by itself, in ascending order.
     pub fn by_incidence(&self, at: &ModelParameters) -> Vec<IncidenceError> {
-        let squares = |segment: &Segment| {
-            let (above, below) = self.squares_of(at, segment);
+        self.error_and_by_incidence(at).1
+    }
+
+    /// E, as a fraction, and E of each incidence by itself: each reading is looked at once, the
+    /// incidences side by side.
+    pub fn error_and_by_incidence(&self, at: &ModelParameters) -> (f64, Vec<IncidenceError>) {
+        let segments = self.segments.par_iter();
+        let squares: Vec<(f64, f64)> = segments
+            .map(|segment| self.squares_of(at, segment))
+            .collect();
+        let error = squares.iter().map(|(above, _)| above).sum();
+        let of = |(segment, (above, below)): (&Segment, (f64, f64))| {
             IncidenceError::new(segment, (below > 0.0).then(|| 100.0 * above / below))
         };
-        self.segments.iter().map(squares).collect()
+        (error, self.segments.iter().zip(squares).map(of).collect())
     }
 
     /// Numerator and denominator of E over one incidence.
     pub(crate) fn squares_of(&self, at: &ModelParameters, segment: &Segment) -> (f64, f64) {
-        let residuals = self.residuals_of(at, segment.rows.clone());
-        residuals.iter().fold((0.0, 0.0), |(above, below), (r, y)| {
-            (above + r * r, below + y * y)
-        })
+        let (mut above, mut below) = (0.0, 0.0);
+        self.for_blocks(at, [false; 3], segment.rows.clone(), |_, block| {
+            let r = residual(block, at);
+            above += dot(&r, &r);
+            below += dot(&block.y, &block.y);
+        });
+        (above, below)
     }
 
     /// The terms under the sum of E before they are squared: model - measured and measured, for

@@ -111,14 +111,11 @@ fn folder_of(path: &Path) -> &Path {
 
 /// What the system says, without the name of a temporary file that the user does not know.
 fn plain(error: io::Error) -> io::Error {
-    let code = error.raw_os_error().or_else(|| {
-        error
-            .get_ref()?
-            .source()?
-            .downcast_ref::<io::Error>()?
-            .raw_os_error()
-    });
-    code.map_or(error, io::Error::from_raw_os_error)
+    let words = error.to_string();
+    match words.split_once(" at path ") {
+        Some((reason, _)) => io::Error::new(error.kind(), reason),
+        None => error,
+    }
 }
 
 fn write_directly(
@@ -197,6 +194,7 @@ mod tests {
                 .to_string()
                 .starts_with("/no/such/folder/x.json: cannot be written")
         );
+        assert!(!message.to_string().contains(".tmp"), "{message}");
     }
 
     #[cfg(unix)]

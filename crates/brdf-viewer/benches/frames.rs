@@ -7,6 +7,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use brdf_fit::model::Model;
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Native;
 use brdf_viewer::intent::{Command, Intent};
@@ -68,33 +69,44 @@ fn frames(criterion: &mut Criterion) {
             let id = viewer.state.active.expect("a sample");
             viewer.state.apply(Intent::ShowAllIncidences(id, true));
         }
-        group.bench_function(format!("{name}, nothing changes"), |bench| {
-            bench.iter(|| black_box(window.frame_and_triangles(&mut viewer)));
-        });
-        let turn = |viewer: &mut Viewer| {
-            let mut knobs = viewer.state.active_sample().expect("a sample").scan().knobs;
-            knobs.at.k1 = if knobs.at.k1 > 0.3 {
-                0.2
-            } else {
-                1.001 * knobs.at.k1
-            };
-            viewer.state.apply(Intent::Turn(knobs));
+        let mut time = |viewer: &mut Viewer, what: &str, drag: bool| {
+            group.bench_function(format!("{name}, {what}"), |bench| {
+                bench.iter(|| {
+                    if drag {
+                        turn(viewer);
+                    }
+                    black_box(window.frame_and_triangles(viewer))
+                });
+            });
         };
-        group.bench_function(format!("{name}, a slider is dragged"), |bench| {
-            bench.iter(|| {
-                turn(&mut viewer);
-                black_box(window.frame_and_triangles(&mut viewer))
-            });
-        });
-        viewer.state.apply(Intent::Do(Command::Residuals));
-        viewer.state.apply(Intent::Do(Command::Panels));
-        group.bench_function(format!("{name}, panels with residuals, dragged"), |bench| {
-            bench.iter(|| {
-                turn(&mut viewer);
-                black_box(window.frame_and_triangles(&mut viewer))
-            });
-        });
+        let command = |viewer: &mut Viewer, command| viewer.state.apply(Intent::Do(command));
+        time(&mut viewer, "nothing changes", false);
+        time(&mut viewer, "k1 of three dragged", true);
+        command(&mut viewer, Command::Residuals);
+        time(&mut viewer, "with residuals, k1 of three dragged", true);
+        let power = Intent::Model(Model::PowerN, Scope::All);
+        viewer.state.apply(power);
+        time(&mut viewer, "with residuals, k1 of power+n dragged", true);
+        command(&mut viewer, Command::Panels);
+        time(
+            &mut viewer,
+            "panels with residuals, k1 of power+n dragged",
+            true,
+        );
+        command(&mut viewer, Command::Polar);
+        time(&mut viewer, "polar, k1 of power+n dragged", true);
     }
+}
+
+/// Turns k1 by a little, over and over again.
+fn turn(viewer: &mut Viewer) {
+    let mut knobs = viewer.state.active_sample().expect("a sample").scan().knobs;
+    knobs.at.k1 = if knobs.at.k1 > 0.3 {
+        0.2
+    } else {
+        1.001 * knobs.at.k1
+    };
+    viewer.state.apply(Intent::Turn(knobs));
 }
 
 /// Frames while everything under ../shared/data is fitted: said, not judged.
@@ -127,7 +139,7 @@ fn while_fitting(_: &mut Criterion) {
     let run = viewer.state.run.as_ref().expect("a run");
     println!(
         "frames while {} scans of {} samples are fitted in {:.1} s: {} frames, median {:.1?}, 99 % below {:.1?}, longest {:.1?}",
-        run.jobs,
+        run.jobs(),
         viewer.state.samples.len(),
         started.elapsed().as_secs_f64(),
         frames.len(),

@@ -11,6 +11,7 @@ use crate::plot;
 use crate::shortcuts;
 use crate::state::saved::{SMALLEST_WINDOW, Settings};
 use crate::state::{Effect, State};
+use crate::theme;
 use crate::worker::Worker;
 
 /// The application.
@@ -74,7 +75,8 @@ impl Viewer {
             self.apply(&mut intents);
         }
         let ctx = ui.ctx().clone();
-        panels::theme::set(&ctx, self.state.interface.dark);
+        self.state.system_dark = theme::system_is_dark(&ctx);
+        theme::set(&ctx, self.state.interface.dark);
         let mut intents = panels::drop::intents(&ctx);
         if self.state.dialog.is_none() {
             let pressed = shortcuts::pressed(&ctx).into_iter();
@@ -126,7 +128,6 @@ impl Viewer {
         for effect in effects {
             match effect {
                 Effect::Job(job) => self.worker.start(job),
-                Effect::Cancel => self.worker.cancel(),
                 Effect::Copy(text) => ctx.copy_text(text),
                 Effect::AskOpen if self.dialogs.available() => {
                     self.dialogs.open(self.worker.events());

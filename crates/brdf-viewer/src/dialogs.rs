@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::thread;
 
 use crate::intent::Export;
-use crate::worker::{Event, Events};
+use crate::job::Event;
+use crate::worker::Events;
 
 /// Dialogs for files. In the tests there are none, or ones that answer by themselves.
 pub trait Dialogs {

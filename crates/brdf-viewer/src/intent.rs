@@ -7,7 +7,7 @@ use brdf_fit::plot::View;
 use brdf_fit::read::Convention;
 
 use crate::state::fitting::{FitChoice, Scope, Stages};
-use crate::state::interface::{ResultTab, Side};
+use crate::state::interface::ResultTab;
 use crate::state::sample::{Knobs, SampleId};
 
 /// A wish of the user. [`State::apply`](crate::state::State::apply) carries it out.
@@ -39,8 +39,8 @@ pub enum Intent {
     View(View),
     /// Other parameters of the active sample.
     Turn(Knobs),
-    /// Another model of the active sample.
-    Model(Model),
+    /// Another model of some scans.
+    Model(Model, Scope),
     /// A parameter back to its fitted value.
     Reset(Parameter),
     /// Other settings of the fit.
@@ -51,8 +51,6 @@ pub enum Intent {
     Write(Export, PathBuf),
     /// The table of the results.
     Tab(ResultTab),
-    /// Show or hide a side of the window.
-    Side(Side, bool),
     /// Another text in the box of the dialog that is open.
     Path(String),
     /// What the dialog that is open says is done: open, or write, the path in its box.
@@ -81,7 +79,7 @@ pub enum Export {
 pub enum Picture {
     /// Lines that print at any size.
     Svg,
-    /// Pixels, twice as many as on the screen.
+    /// Pixels.
     Png,
 }
 
@@ -158,6 +156,8 @@ pub enum Command {
     Results,
     /// Dark or light.
     Dark,
+    /// Dark or light as the system says.
+    SystemTheme,
     /// What this is.
     About,
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use brdf_fit::model::Model;
+use brdf_fit::output::resolved;
 use brdf_fit::read::{Convention, Side};
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Native;
@@ -87,6 +88,7 @@ struct Arguments {
 enum Theme {
     Light,
     Dark,
+    System,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -107,6 +109,9 @@ enum Results {
 
 /// The largest picture, in points a side.
 const LARGEST: f32 = 8192.0;
+
+/// The largest picture, in pixels: each takes some 20 bytes while it is drawn.
+const MOST_PIXELS: f32 = 8192.0 * 8192.0;
 
 fn parse_size(text: &str) -> Result<[f32; 2], String> {
     let expected = || format!("\"{text}\": expected WIDTHxHEIGHT from 900x600 to 8192x8192");
@@ -177,10 +182,22 @@ fn settings_file() -> Option<PathBuf> {
 
 fn take_screenshot(arguments: &Arguments, path: &Path) -> Result<(), String> {
     let size = arguments.size.unwrap_or(Settings::unkept().saved.window);
+    check_picture(size, arguments.scale)?;
+    if arguments
+        .files
+        .iter()
+        .any(|file| resolved(file) == resolved(path))
+    {
+        return Err(is_input(path));
+    }
     let mut window = Unseen::new(size, arguments.scale);
     let mut viewer = Viewer::new(window.context(), Box::new(Native), Settings::unkept());
     start(&mut viewer, arguments);
     let image = window.picture(&mut viewer)?;
+    // A fit has opened its scan as well.
+    if viewer.state.is_open(path) {
+        return Err(is_input(path));
+    }
     write_png(&image, path)?;
     let errors = viewer.state.errors();
     if errors.is_empty() {
@@ -188,6 +205,25 @@ fn take_screenshot(arguments: &Arguments, path: &Path) -> Result<(), String> {
     } else {
         Err(errors.join("\n"))
     }
+}
+
+/// No picture takes the place of what it is of.
+fn is_input(path: &Path) -> String {
+    let path = path.display();
+    format!("{path}: is an input of this command: expected a file of its own for the picture")
+}
+
+fn check_picture([width, height]: [f32; 2], scale: f32) -> Result<(), String> {
+    let pixels = width * height * scale * scale;
+    if pixels <= MOST_PIXELS {
+        return Ok(());
+    }
+    Err(format!(
+        "--size {width}x{height} with --scale {scale}: {:.0} million pixels: expected {:.0} million \
+         at most",
+        pixels / 1e6,
+        MOST_PIXELS / 1e6
+    ))
 }
 
 /// What the options say is to be done.
@@ -199,7 +235,9 @@ fn start(viewer: &mut Viewer, arguments: &Arguments) {
     }));
     viewer.open_at_start(arguments.files.clone());
     set_view(viewer, arguments);
-    let model = arguments.model.map(Intent::Model);
+    let model = arguments
+        .model
+        .map(|model| Intent::Model(model, Scope::All));
     let fit = arguments
         .fit
         .then_some(Intent::Fit(Stages::Both, Scope::All));
@@ -227,7 +265,11 @@ fn set_view(viewer: &mut Viewer, arguments: &Arguments) {
         }
     }
     if let Some(theme) = arguments.theme {
-        state.interface.dark = Some(theme == Theme::Dark);
+        state.interface.dark = match theme {
+            Theme::Light => Some(false),
+            Theme::Dark => Some(true),
+            Theme::System => None,
+        };
     }
     if let Some(results) = arguments.results {
         state.interface.results = !matches!(results, Results::None);

@@ -1,6 +1,6 @@
 //! The commands with their names and keys, in one place for the menus and the keyboard.
 
-use egui::{Key, KeyboardShortcut, Modifiers};
+use egui::{Key, KeyboardShortcut, Modifiers, Popup};
 
 use crate::intent::{Command, Export, Picture};
 
@@ -61,6 +61,7 @@ pub const MENUS: [Menu; 5] = [
             Some(Command::Parameters),
             Some(Command::Results),
             Some(Command::Dark),
+            Some(Command::SystemTheme),
         ],
     },
     Menu {
@@ -108,6 +109,7 @@ impl Command {
             Self::Parameters => "Parameters panel",
             Self::Results => "Results panel",
             Self::Dark => "Dark",
+            Self::SystemTheme => "Dark or light as the system",
             Self::About => "About and keys",
         }
     }
@@ -142,6 +144,7 @@ impl Command {
             Self::Parameters => (NONE, Key::F7),
             Self::Results => (NONE, Key::F8),
             Self::Dark => (NONE, Key::F9),
+            Self::SystemTheme => (Modifiers::SHIFT, Key::F9),
             Self::About => (NONE, Key::F1),
         };
         Some(KeyboardShortcut::new(modifiers, key))
@@ -159,12 +162,15 @@ impl Command {
 /// The commands whose keys were pressed.
 pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
     let editing = ctx.text_edit_focused();
+    // Escape closes a menu first; what it means beside that is for the next time.
+    let closes_popup = |command: Command| command == Command::Cancel && Popup::is_any_open(ctx);
     // A key with more modifiers comes before the same with fewer.
     let mut all: Vec<(Command, KeyboardShortcut)> = MENUS
         .iter()
         .flat_map(|menu| menu.entries.iter().copied().flatten())
         .filter_map(|command| Some((command, command.shortcut()?)))
         .filter(|(command, _)| !(editing && command.belongs_to_text()))
+        .filter(|(command, _)| !closes_popup(*command))
         .collect();
     all.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);
     ctx.input_mut(|input| {

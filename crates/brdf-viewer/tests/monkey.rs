@@ -7,15 +7,17 @@
 #[path = "window/common.rs"]
 mod common;
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use brdf_viewer::intent::Intent;
-use common::{Window, drop_file, empty, z307};
+use brdf_viewer::state::saved::Settings;
+use common::{NoDialogs, Window, drop_file, drop_path, window_with, z307};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use rand::rngs::StdRng;
 use rand::{RngExt as _, SeedableRng as _};
 
-const KEYS: [Key; 30] = [
+const KEYS: [Key; 33] = [
     Key::Tab,
     Key::Enter,
     Key::Escape,
@@ -46,6 +48,9 @@ const KEYS: [Key; 30] = [
     Key::O,
     Key::A,
     Key::W,
+    Key::S,
+    Key::E,
+    Key::R,
 ];
 
 /// More memory than this over that after the first tenth is a leak, in bytes.
@@ -67,8 +72,10 @@ fn random_events_do_not_break_the_window() {
     // What is written by chance shall not be written into the project.
     std::env::set_current_dir(folder.path()).unwrap();
     let mut random = StdRng::seed_from_u64(seed);
-    let mut window = empty();
-    let scan = z307();
+    let settings = || Settings::of(Some(folder.path().join("settings/state.json")));
+    let mut window = window_with([1280.0, 800.0], NoDialogs, settings());
+    let scan = folder.path().join("scan.csv");
+    std::fs::write(&scan, z307()).unwrap();
     let started = Instant::now();
     let mut first_memory = None;
     let mut events = 0_u64;
@@ -100,10 +107,13 @@ fn random_events_do_not_break_the_window() {
     );
     assert!(grown < MOST_GROWTH, "{} MiB", grown >> 20);
     assert!(events > 100);
+    // What was kept is taken up again.
+    let again = window_with([1280.0, 800.0], NoDialogs, settings());
+    assert!(again.state().state.errors().is_empty());
 }
 
 /// One random event, and a frame.
-fn disturb(window: &mut Window, random: &mut StdRng, scan: &str) {
+fn disturb(window: &mut Window, random: &mut StdRng, scan: &Path) {
     let size = window.ctx.content_rect().size();
     let mut anywhere = || {
         let x = random.random_range(0.0..size.x);
@@ -176,8 +186,12 @@ fn press(window: &mut Window, from: Pos2, to: Pos2, button: PointerButton) {
     window.event(event(to, false));
 }
 
-fn drop_something(window: &mut Window, random: &mut StdRng, scan: &str) {
-    let mut text = scan.to_owned();
+fn drop_something(window: &mut Window, random: &mut StdRng, scan: &Path) {
+    if random.random_bool(0.3) {
+        drop_path(window, scan);
+        return;
+    }
+    let mut text = z307();
     if random.random_bool(0.5) {
         // Somewhere in it something else stands.
         let at = random.random_range(0..text.len());

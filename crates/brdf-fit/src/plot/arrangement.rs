@@ -3,9 +3,9 @@
 use brdf_core::AnyBrdf;
 
 use super::axis::Axis;
-use super::canvas::{Canvas, Stands, drawn};
+use super::canvas::{Canvas, Stands};
 use super::curves::{Curves, Source, Styled};
-use super::frame::{Area, Frame, WHOLE, draw_title};
+use super::frame::{Area, Frame, WHOLE, draw_title, drawn_with_samples, shortened_within};
 use super::style::TEXT;
 use super::title::Title;
 use super::view::{Layout, Scale, View};
@@ -35,8 +35,8 @@ pub struct Layer<'a> {
     pub sigma: Sigma<'a>,
     /// The incidences that are shown, psi in radians; `None` shows up to 8 of those with readings.
     pub incidences: Option<&'a [f64]>,
-    /// The family of colours: see [`colour`](super::colour).
-    pub family: usize,
+    /// The family of colours, where there are several samples: see [`colour`](super::colour).
+    pub family: Option<usize>,
 }
 
 /// One figure of a view, `view`, of one or several samples: together, in panels or in the polar
@@ -65,7 +65,7 @@ pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
     let svg = if view.layout == Layout::Polar {
         polar::svg(&title, &curves, note.as_deref())?
     } else {
-        drawn(|canvas| {
+        drawn_with_samples(&title, |canvas| {
             draw_title(canvas, &title)?;
             for panel in panels(&curves) {
                 panel.draw(canvas, &curves, &axis)?;
@@ -92,25 +92,46 @@ pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
 fn title(layers: &[Layer]) -> Title {
     let join = |of: &dyn Fn(&Layer) -> String| layers.iter().map(of).collect::<Vec<_>>().join("; ");
     let theory = join(&|layer: &Layer| layer.theory.clone());
-    let sample = match layers {
+    match layers {
         [one] => {
             let sample = one.measurements.metadata.get("sample").unwrap_or_default();
-            let wavelength = one.measurements.wavelengths().first().copied().flatten();
-            let wavelength = wavelength.map_or_else(String::new, |w| format!(", {w} um"));
             let colon = if sample.is_empty() { "" } else { ": " };
-            shortened(&format!("{}{wavelength}{colon}{sample}", one.name), 100)
+            Title {
+                sample: shortened(&format!("{}{colon}{sample}", one.title()), 100),
+                details: theory.clone(),
+                theory,
+                samples: Vec::new(),
+            }
         }
-        _ => shortened(&join(&|layer: &Layer| layer.name.clone()), 100),
-    };
-    Title {
-        sample,
-        details: shortened(&theory, 130),
-        theory,
+        _ => Title {
+            sample: shortened_within(&join(&|layer: &Layer| layer.title()), 100),
+            details: String::new(),
+            theory,
+            samples: layers.iter().map(Layer::line).collect(),
+        },
+    }
+}
+
+impl Layer<'_> {
+    /// Its name and its wavelength.
+    fn title(&self) -> String {
+        self.named(usize::MAX)
+    }
+
+    /// What a line says of it: its name and wavelength, the model and its parameters.
+    fn line(&self) -> String {
+        format!("{}: {}", self.named(50), self.theory)
+    }
+
+    fn named(&self, longest: usize) -> String {
+        let wavelength = self.measurements.wavelengths().first().copied().flatten();
+        let wavelength = wavelength.map_or_else(String::new, |w| format!(", {w} um"));
+        format!("{}{wavelength}", shortened_within(&self.name, longest))
     }
 }
 
 /// A text that is not longer than so many letters.
-pub(super) fn shortened(text: &str, longest: usize) -> String {
+fn shortened(text: &str, longest: usize) -> String {
     if text.chars().count() <= longest {
         return text.to_owned();
     }
@@ -252,6 +273,42 @@ impl Panel<'_> {
         Area {
             top: self.area.bottom - RESIDUALS * height,
             ..self.area
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::{Family, ModelParameters, Parameters};
+
+    use super::*;
+
+    #[test]
+    fn a_figure_of_several_samples_names_every_curve_and_all_parameters() {
+        let none = Measurements::default();
+        let at = ModelParameters::three(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
+        let psi = [0.2, 0.4, 0.6, 0.8, 1.0];
+        let layer = |i: usize| Layer {
+            name: format!("a sample with a rather long name, piece {i}"),
+            measurements: &none,
+            brdf: AnyBrdf::new(Family::Paper, &at).unwrap(),
+            theory: format!("three: k2 = 0.3000, kD = 0.1000, k1 = 0.200{i}, n = 1.5000"),
+            sigma: None,
+            incidences: Some(&psi),
+            family: Some(i),
+        };
+        let layers: Vec<Layer> = (0..4).map(layer).collect();
+        for layout in [Layout::Together, Layout::Panels, Layout::Polar] {
+            let view = View {
+                layout,
+                ..View::default()
+            };
+            let svg = figure_of(&layers, &view).unwrap().svg;
+            assert!(!svg.contains("curves are named"), "{layout:?}");
+            for i in 0..4 {
+                assert!(svg.contains(&format!("piece {i}: three: k2")), "{layout:?}");
+                assert!(svg.contains(&format!("k1 = 0.200{i}, n = 1.5000")));
+            }
         }
     }
 }

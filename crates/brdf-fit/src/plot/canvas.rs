@@ -38,8 +38,17 @@ pub(super) enum Stands {
 pub(super) fn drawn(
     draw: impl FnOnce(&mut Canvas) -> Result<(), PlotError>,
 ) -> Result<String, PlotError> {
+    drawn_above(0, draw)
+}
+
+/// The same with room for so many units below.
+pub(super) fn drawn_above(
+    room: u32,
+    draw: impl FnOnce(&mut Canvas) -> Result<(), PlotError>,
+) -> Result<String, PlotError> {
     let mut svg = String::new();
-    let (width, height) = (SIZE.0 * FINE, SIZE.1 * FINE);
+    let size = (SIZE.0, SIZE.1 + room);
+    let (width, height) = (size.0 * FINE, size.1 * FINE);
     let mut canvas = Canvas {
         backend: SVGBackend::with_string(&mut svg, (width, height)),
     };
@@ -54,7 +63,7 @@ pub(super) fn drawn(
     drop(canvas);
     // The size that is shown; the coordinates inside stay the fine ones.
     let fine = format!("width=\"{width}\" height=\"{height}\"");
-    let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0, SIZE.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     Ok(svg.replacen(&fine, &shown, 1))
 }
 
@@ -147,15 +156,7 @@ impl Canvas<'_> {
                 let drawn = self.backend.draw_circle(centre, radius, &style, true);
                 drawn.map_err(failed)
             }
-            MarkShape::Square => self.area(
-                &[
-                    (x - square, y - square),
-                    (x + square, y - square),
-                    (x + square, y + square),
-                    (x - square, y + square),
-                ],
-                &colour,
-            ),
+            MarkShape::Square => self.rectangle((x, y), (square, square), colour),
             MarkShape::Diamond => self.area(
                 &[
                     (x - diamond, y),
@@ -165,15 +166,33 @@ impl Canvas<'_> {
                 ],
                 &colour,
             ),
-            MarkShape::Triangle => self.area(
-                &[
-                    (x - triangle, y + 0.6 * triangle),
-                    (x, y - 1.1 * triangle),
-                    (x + triangle, y + 0.6 * triangle),
-                ],
-                &colour,
-            ),
+            MarkShape::Triangle => self.triangle((x, y), triangle, colour),
+            MarkShape::Inverted => self.triangle((x, y), -triangle, colour),
+            MarkShape::Cross => {
+                let (long, short) = (3.3, 1.1);
+                self.rectangle((x, y), (long, short), colour)?;
+                self.rectangle((x, y), (short, long), colour)
+            }
         }
+    }
+
+    /// A triangle around a place; of negative size it stands on its point.
+    fn triangle(&mut self, (x, y): Place, size: f64, colour: RGBColor) -> Result<(), PlotError> {
+        let (base, point) = (y + 0.6 * size, y - 1.1 * size);
+        self.area(&[(x - size, base), (x, point), (x + size, base)], &colour)
+    }
+
+    /// A rectangle around a place, of half this size.
+    fn rectangle(
+        &mut self,
+        (x, y): Place,
+        (width, height): (f64, f64),
+        colour: RGBColor,
+    ) -> Result<(), PlotError> {
+        let (left, right) = (x - width, x + width);
+        let (top, bottom) = (y - height, y + height);
+        let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+        self.area(&corners, &colour)
     }
 
     /// A line of text, its middle at the height of its place.

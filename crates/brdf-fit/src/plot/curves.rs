@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use brdf_core::{AnyBrdf, Geometry};
 
 use super::Sigma;
-use super::arrangement::shortened;
 use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
 use super::selection::Selection;
 use super::view::{Scale, View};
@@ -91,6 +90,13 @@ pub fn curves(
         .collect()
 }
 
+/// The theory alone in the plane of incidence, at incidences psi in radians.
+pub fn theory_curves(brdf: &AnyBrdf, incidences: &[f64]) -> Vec<Curve> {
+    let (none, view) = (Measurements::default(), View::default());
+    let selection = Selection::of(&none, &view, Some(incidences), FIGURE_COLUMNS);
+    curves(&none, &selection, brdf, None, &view)
+}
+
 fn shown_reading(i: usize, of: &Measurement, brdf: &AnyBrdf, view: &View) -> Option<Reading> {
     let at = of.geometry().ok()?;
     let quantity = |brdf: f64| view.quantity.of(brdf, at.cos_theta());
@@ -141,9 +147,9 @@ fn theory_angles(mirror_deg: Option<f64>) -> Vec<f64> {
 /// The ends of the axis of a view: its readings with their error bars, and the theory beside them.
 /// `None` where a logarithmic axis has nothing positive to show.
 ///
-/// Of the theory that is what lies within the readings of its incidence and not above three times
-/// the largest of all: beyond, it may be many times as large as any reading. A logarithmic axis has
-/// 6 decades at the most.
+/// Of the theory that is what lies within the readings of its incidence. It and the error bars count
+/// up to three times the largest reading of all: beyond, they may be many times as large as any. A
+/// logarithmic axis has 6 decades at the most.
 pub fn value_range<'a>(
     curves: impl Iterator<Item = &'a Curve> + Clone,
     scale: Scale,
@@ -178,10 +184,12 @@ pub(super) fn values<'a>(
         0.0 => f64::INFINITY,
         highest => highest,
     };
-    let measured = readings.flat_map(|reading| {
-        let sigma = reading.sigma.unwrap_or(0.0);
-        [reading.value, reading.value + sigma]
-    });
+    let upper_ends = readings
+        .clone()
+        .filter_map(|reading| Some(reading.value + reading.sigma?));
+    let measured = readings
+        .map(|reading| reading.value)
+        .chain(upper_ends.filter(move |end| *end <= highest));
     let theory = curves.flat_map(Curve::theory_beside_readings);
     let theory = theory.flat_map(|theory| {
         let sigma = theory.sigma.unwrap_or(0.0);
@@ -190,11 +198,16 @@ pub(super) fn values<'a>(
     measured.chain(theory.filter(move |value| *value <= highest))
 }
 
-/// The lower ends of the error bars. On a logarithmic axis they may lie at any depth.
-pub(super) fn lower_ends<'a>(curves: impl Iterator<Item = &'a Curve>) -> impl Iterator<Item = f64> {
+/// The lower ends of the error bars, as far down as the axis goes up. On a logarithmic axis they may
+/// lie at any depth.
+pub(super) fn lower_ends<'a>(
+    curves: impl Iterator<Item = &'a Curve> + Clone,
+) -> impl Iterator<Item = f64> {
+    let highest = values(curves.clone()).fold(0.0, f64::max);
     curves
         .flat_map(|curve| &curve.readings)
         .filter_map(|reading| Some(reading.value - reading.sigma?))
+        .filter(move |end| *end >= -highest)
 }
 
 impl Curve {
@@ -235,7 +248,8 @@ impl Curve {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Styled {
     pub(super) curve: Curve,
-    pub(super) name: String,
+    /// The name of its sample, where there are several.
+    pub(super) sample: Option<String>,
     pub(super) colour: [u8; 3],
     pub(super) mark: MarkShape,
 }
@@ -248,6 +262,10 @@ pub(super) struct Curves {
     pub(super) all: Vec<Styled>,
     /// Sentences for the captions, each with a blank before it.
     pub(super) left_out: String,
+    /// How many readings are zero or negative, drawn or not.
+    pub(super) not_positive: usize,
+    /// How many are negative.
+    pub(super) negative: usize,
 }
 
 /// What a figure shows of one sample.
@@ -260,7 +278,7 @@ pub(super) struct Source<'a> {
     /// Angles psi in radians; `None` takes those with readings in the plane, evenly as many as have
     /// colours of their own.
     pub(super) incidences: Option<&'a [f64]>,
-    pub(super) family: usize,
+    pub(super) family: Option<usize>,
 }
 
 impl Curves {
@@ -270,6 +288,8 @@ impl Curves {
             view: *view,
             all: Vec::new(),
             left_out: String::new(),
+            not_positive: 0,
+            negative: 0,
         };
         for source in sources {
             all.add(source);
@@ -286,7 +306,7 @@ impl Curves {
             brdf,
             sigma: None,
             incidences: Some(&incidences),
-            family: 0,
+            family: None,
         };
         Self::of(&[source], &View::default())
     }
@@ -306,6 +326,8 @@ impl Curves {
             selection.traces = evenly(&selection.traces, FEW_CURVES);
         }
         self.left_out += &left_out(source, &view, &selection, known, in_plane);
+        self.not_positive += selection.not_positive();
+        self.negative += selection.negative();
         let all = curves(
             source.measurements,
             &selection,
@@ -315,13 +337,9 @@ impl Curves {
         );
         let count = all.len();
         for (i, curve) in all.into_iter().enumerate() {
-            let name = match source.name {
-                None => curve.name(),
-                Some(sample) => format!("{}, {}", curve.name(), shortened(sample, 18)),
-            };
             self.all.push(Styled {
                 curve,
-                name,
+                sample: source.name.map(str::to_owned),
                 colour: colour(source.family, i, count, Ground::Light),
                 mark: mark(source.family, i),
             });

@@ -4,18 +4,21 @@ use plotters::style::{Color, RGBColor};
 
 use super::PlotError;
 use super::axis::Axis;
-use super::canvas::{Canvas, Place, Stands};
+use super::canvas::{Canvas, Place, Stands, drawn_above};
 use super::clip::within;
 use super::curves::{Styled, evenly};
 use super::palette::MarkShape;
-use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, TITLE, ink};
+use super::style::{BAND, FINE_GRID, GRID, INK, SIZE, TEXT, TITLE, ink};
 use super::title::Title;
 
 /// Where the legend begins, beside the axes.
 const LEGEND: f64 = 780.0;
 
 /// So many lines of a legend are for curves: the others are needed for what else is explained.
-const CURVE_LINES: usize = 16;
+const CURVE_LINES: usize = 30;
+
+/// The lines of a legend are so far apart, where there is room.
+const LINES_APART: f64 = 20.0;
 
 /// Where the axes stand in the figure.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -234,10 +237,39 @@ impl Frame {
     }
 }
 
-/// The two lines of the title.
+/// The two lines of the title, and below the figure a line for each of several samples.
 pub(super) fn draw_title(canvas: &mut Canvas, title: &Title) -> Result<(), PlotError> {
     canvas.text(&title.sample, (20.0, 22.0), TITLE, Stands::Right)?;
-    canvas.text(&title.details, (20.0, 45.0), TEXT, Stands::Right)
+    canvas.text(&title.details, (20.0, 45.0), TEXT, Stands::Right)?;
+    for (i, sample) in title.samples.iter().enumerate() {
+        let y = f64::from(SIZE.1) + LINES_APART * (i as f64 + 0.5);
+        canvas.text(sample, (20.0, y), TEXT, Stands::Right)?;
+    }
+    Ok(())
+}
+
+/// A drawing with room below for the lines of the samples.
+pub(super) fn drawn_with_samples(
+    title: &Title,
+    draw: impl FnOnce(&mut Canvas) -> Result<(), PlotError>,
+) -> Result<String, PlotError> {
+    let lines = u32::try_from(title.samples.len()).unwrap_or(0);
+    // Half a line more, so that the last one does not stand on the border.
+    let room = if lines > 0 { 20 * lines + 10 } else { 0 };
+    drawn_above(room, draw)
+}
+
+/// A text that is not longer than so many letters: of a longer one its start and its end, where
+/// names differ most.
+pub(super) fn shortened_within(text: &str, longest: usize) -> String {
+    let letters: Vec<char> = text.chars().collect();
+    if letters.len() <= longest {
+        return text.to_owned();
+    }
+    let end = (longest - 3) / 2;
+    let start = letters[..longest - 3 - end].iter();
+    let end = letters[letters.len() - end..].iter();
+    start.chain(&['.'; 3]).chain(end).collect()
 }
 
 /// Numbers at the axis of values are at least so far apart.
@@ -245,6 +277,9 @@ const LEAST_APART: f64 = 15.0;
 
 /// Letters of a line of the legend beside its key.
 const A_LINE: usize = 21;
+
+/// Letters of a line without a key.
+const A_NOTE: usize = 27;
 
 /// The legend, to the right of the axes.
 #[derive(Default)]
@@ -274,7 +309,11 @@ pub(super) enum Key {
 impl Legend {
     /// Adds a line, or for a longer text several.
     pub(super) fn add(&mut self, key: Key, text: &str) {
-        let longest = if matches!(key, Key::Note) { 27 } else { A_LINE };
+        let longest = if matches!(key, Key::Note) {
+            A_NOTE
+        } else {
+            A_LINE
+        };
         let mut key = key;
         for line in wrapped(text, longest) {
             self.lines.push((key, line));
@@ -285,14 +324,20 @@ impl Legend {
         }
     }
 
-    /// Adds the curves, or evenly as many of them as there is room for, and says so.
+    /// Adds the curves, sample by sample, or evenly as many of them as there is room for, and says
+    /// so.
     pub(super) fn add_curves(&mut self, curves: &[Styled], measured: bool) {
-        let lines = curves.iter().map(|of| wrapped(&of.name, A_LINE).len());
-        let room = CURVE_LINES / lines.max().unwrap_or(1).max(1);
-        let named = evenly(curves, room.max(2));
-        for of in &named {
-            let mark = measured.then_some(of.mark);
-            self.add(Key::Curve(ink(of.colour), mark), &of.name);
+        let of_sample = |a: &Styled, b: &Styled| a.sample == b.sample;
+        let samples = curves.chunk_by(of_sample).count();
+        let named = evenly(curves, CURVE_LINES.saturating_sub(samples).max(2));
+        for of in named.chunk_by(of_sample) {
+            if let Some(sample) = &of[0].sample {
+                self.add(Key::Note, &shortened_within(sample, A_NOTE));
+            }
+            for of in of {
+                let mark = measured.then_some(of.mark);
+                self.add(Key::Curve(ink(of.colour), mark), &of.curve.name());
+            }
         }
         if named.len() < curves.len() {
             let words = format!("{} of {} curves are named", named.len(), curves.len());
@@ -301,11 +346,15 @@ impl Legend {
     }
 
     pub(super) fn draw(&self, canvas: &mut Canvas) -> Result<(), PlotError> {
+        let top = WHOLE.top + 8.0;
+        let room = f64::from(SIZE.1) - top;
+        let apart = (room / self.lines.len().max(1) as f64).min(LINES_APART);
         for (i, (key, text)) in self.lines.iter().enumerate() {
-            let y = WHOLE.top + 8.0 + 20.0 * i as f64;
+            let y = top + apart * i as f64;
             let indent = if matches!(key, Key::Note) { 0.0 } else { 34.0 };
             key.draw(canvas, y)?;
-            canvas.text(text, (LEGEND + indent, y), TEXT, Stands::Right)?;
+            let size = TEXT.min(0.8 * apart);
+            canvas.text(text, (LEGEND + indent, y), size, Stands::Right)?;
         }
         Ok(())
     }
@@ -367,5 +416,11 @@ mod tests {
         assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
         assert_eq!(wrapped("incomprehensible", 7), ["incomprehensible"]);
         assert!(wrapped("", 7).is_empty());
+    }
+
+    #[test]
+    fn long_names_keep_their_start_and_their_end() {
+        assert_eq!(shortened_within("short", 9), "short");
+        assert_eq!(shortened_within("black_paint_cycled", 11), "blac...cled");
     }
 }

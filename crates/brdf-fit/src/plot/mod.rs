@@ -57,8 +57,8 @@ use curves::{Curves, Source};
 use title::Title;
 
 pub use arrangement::{Layer, figure_of};
-pub use curves::{Curve, Reading, Theory, curves, value_range};
-pub use palette::{FAMILIES, Ground, MarkShape, colour, mark};
+pub use curves::{Curve, Reading, Theory, curves, theory_curves, value_range};
+pub use palette::{FAMILIES, Ground, MarkShape, colour, family_colour, mark};
 pub use paper::paper_figures;
 pub use selection::{Selection, Trace};
 pub use trade::{TradePoint, trade_picture};
@@ -149,7 +149,7 @@ pub fn figures(
         brdf: &brdf,
         sigma,
         incidences: None,
-        family: 0,
+        family: None,
     };
     let curves = Curves::of(&[source], &View::default());
     let mut figures = Vec::new();

@@ -1,7 +1,7 @@
 //! Colours and marks of the incidences, for print and for screens, which colour-blind readers tell
 //! apart.
 
-/// Up to so many incidences of the first sample have colours of their own.
+/// Up to so many incidences of the only sample have colours of their own.
 pub(super) const FEW_CURVES: usize = FEW.len();
 
 /// So many samples have colours of their own.
@@ -27,9 +27,25 @@ pub enum MarkShape {
     Diamond,
     /// A filled triangle.
     Triangle,
+    /// A filled triangle on its point.
+    Inverted,
+    /// A filled cross.
+    Cross,
 }
 
+/// The marks, one for each family.
+const MARKS: [MarkShape; FAMILIES] = [
+    MarkShape::Circle,
+    MarkShape::Square,
+    MarkShape::Diamond,
+    MarkShape::Triangle,
+    MarkShape::Inverted,
+    MarkShape::Cross,
+];
+
 type Colour = [u8; 3];
+
+type Ramp = [Colour; 5];
 
 /// Okabe and Ito's colours, which colour-blind readers tell apart; grey instead of their yellow,
 /// which is hardly seen on white.
@@ -56,86 +72,107 @@ const FEW_ON_DARK: [Colour; 8] = [
     [150, 150, 150],
 ];
 
-/// Ramps from dark to light, a family each, their lightness in equal steps; the first is for more
-/// incidences of the first sample than there are single colours.
-const RAMPS: [[Colour; 5]; FAMILIES] = [
+/// A ramp from dark to light, its lightness in equal steps, for more incidences of the only sample
+/// than there are single colours.
+const MANY: Ramp = [
+    [40, 20, 90],
+    [55, 90, 140],
+    [35, 140, 135],
+    [95, 190, 95],
+    [215, 215, 45],
+];
+
+/// The same for several samples, a ramp each. The middles of any two differ by 14 or more in CIE
+/// L*a*b* for every eye; the ends cannot, so that the marks differ as well.
+const RAMPS: [Ramp; FAMILIES] = [
+    // Green.
     [
-        [40, 20, 90],
-        [55, 90, 140],
-        [35, 140, 135],
-        [95, 190, 95],
-        [215, 215, 45],
+        [5, 50, 0],
+        [15, 85, 10],
+        [55, 120, 45],
+        [90, 155, 75],
+        [130, 195, 110],
     ],
+    // Violet.
     [
-        [75, 15, 10],
-        [140, 45, 10],
-        [205, 85, 15],
-        [240, 140, 55],
-        [250, 195, 130],
+        [80, 0, 120],
+        [130, 20, 185],
+        [170, 70, 225],
+        [210, 120, 255],
+        [230, 180, 255],
     ],
+    // Amber.
     [
-        [10, 35, 70],
-        [20, 75, 135],
-        [45, 120, 190],
-        [100, 165, 220],
-        [160, 205, 240],
+        [95, 60, 0],
+        [140, 95, 0],
+        [185, 125, 5],
+        [235, 160, 0],
+        [255, 210, 145],
     ],
+    // Red.
     [
-        [55, 5, 70],
-        [110, 25, 120],
-        [165, 60, 160],
-        [210, 115, 195],
-        [235, 175, 225],
+        [125, 5, 25],
+        [175, 50, 55],
+        [220, 90, 90],
+        [255, 135, 130],
+        [255, 195, 190],
     ],
+    // Grey.
     [
-        [30, 30, 30],
-        [80, 80, 80],
-        [125, 125, 125],
-        [165, 165, 165],
-        [205, 205, 205],
+        [35, 30, 35],
+        [75, 70, 70],
+        [115, 110, 115],
+        [160, 155, 160],
+        [210, 205, 210],
     ],
+    // Magenta.
     [
-        [5, 50, 25],
-        [15, 95, 50],
-        [45, 140, 80],
-        [100, 180, 120],
-        [165, 215, 170],
+        [110, 0, 90],
+        [160, 45, 130],
+        [200, 85, 170],
+        [245, 125, 210],
+        [255, 190, 235],
     ],
 ];
 
-/// The colour of incidence `i` of `count`, ascending, of a sample with this family of colours; after
-/// [`FAMILIES`] samples they begin again.
+/// The colour of incidence `i` of `count`, ascending, of the only sample (`None`), or of one of
+/// several in this family of colours; after [`FAMILIES`] samples they begin again.
 ///
-/// Up to 8 incidences of the first sample have colours of their own, others a ramp from dark to
+/// Up to 8 incidences of the only sample have colours of their own, others a ramp from dark to
 /// light, of which each ground shows the part that is seen on it.
-pub fn colour(family: usize, i: usize, count: usize, ground: Ground) -> Colour {
+pub fn colour(family: Option<usize>, i: usize, count: usize, ground: Ground) -> Colour {
     let few = match ground {
         Ground::Light => &FEW,
         Ground::Dark => &FEW_ON_DARK,
     };
-    let family = family % FAMILIES;
-    if family == 0 && count <= few.len() {
-        return few[i % few.len()];
-    }
-    let part = i as f64 / (count.max(2) - 1) as f64;
+    let ramp = match family {
+        None if count <= few.len() => return few[i % few.len()],
+        None => &MANY,
+        Some(family) => &RAMPS[family % FAMILIES],
+    };
+    on_ramp(ramp, i as f64 / (count.max(2) - 1) as f64, ground)
+}
+
+/// The colour that a sample is known by, beside others: the middle of its family.
+pub fn family_colour(family: usize, ground: Ground) -> Colour {
+    on_ramp(&RAMPS[family % FAMILIES], 0.5, ground)
+}
+
+fn on_ramp(ramp: &Ramp, part: f64, ground: Ground) -> Colour {
     let place = match ground {
         Ground::Light => 0.8 * part,
         Ground::Dark => 0.3 + 0.7 * part,
     };
-    between(&RAMPS[family], place.min(1.0))
+    between(ramp, place.min(1.0))
 }
 
-/// The mark of the readings of incidence `i` of a sample.
-pub fn mark(family: usize, i: usize) -> MarkShape {
-    const MARKS: [MarkShape; 4] = [
-        MarkShape::Circle,
-        MarkShape::Square,
-        MarkShape::Diamond,
-        MarkShape::Triangle,
-    ];
-    // Those of the first sample differ among themselves, the others from sample to sample.
-    let place = if family == 0 { i } else { family };
-    MARKS[place % MARKS.len()]
+/// The mark of the readings of incidence `i` of the only sample (`None`), or of one of several.
+pub fn mark(family: Option<usize>, i: usize) -> MarkShape {
+    // Those of the only sample differ among themselves, others from sample to sample.
+    match family {
+        None => MARKS[i % 4],
+        Some(family) => MARKS[family % FAMILIES],
+    }
 }
 
 /// The colour at a place of a ramp, from 0 to 1.
@@ -144,7 +181,7 @@ pub fn mark(family: usize, i: usize) -> MarkShape {
     clippy::cast_sign_loss,
     reason = "places and colours are small positive numbers"
 )]
-fn between(ramp: &[Colour; 5], place: f64) -> Colour {
+fn between(ramp: &Ramp, place: f64) -> Colour {
     let at = place * 4.0;
     let low = (at.floor() as usize).min(3);
     let part = at - low as f64;
@@ -248,10 +285,17 @@ mod tests {
         a.max(b) / a.min(b)
     }
 
+    const GROUNDS: [Ground; 2] = [Ground::Light, Ground::Dark];
+
+    /// The only sample, and each of several.
+    fn samples() -> impl Iterator<Item = Option<usize>> {
+        std::iter::once(None).chain((0..FAMILIES).map(Some))
+    }
+
     #[test]
     fn incidences_are_told_apart_by_every_eye() {
-        for ground in [Ground::Light, Ground::Dark] {
-            for family in 0..FAMILIES {
+        for ground in GROUNDS {
+            for family in samples() {
                 for count in [2, 5] {
                     let all: Vec<Colour> = (0..count)
                         .map(|i| colour(family, i, count, ground))
@@ -259,7 +303,7 @@ mod tests {
                     for (i, a) in all.iter().enumerate() {
                         for b in &all[..i] {
                             let least = least_difference(*a, *b);
-                            assert!(least > 7.0, "{family} {ground:?} {a:?} {b:?}: {least}");
+                            assert!(least > 7.0, "{family:?} {ground:?} {a:?} {b:?}: {least}");
                         }
                     }
                 }
@@ -268,14 +312,27 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_told_apart_by_colour_or_mark() {
-        for ground in [Ground::Light, Ground::Dark] {
-            for a in 1..FAMILIES {
-                for b in 1..a {
-                    let colours = (colour(a, 2, 5, ground), colour(b, 2, 5, ground));
+    fn samples_are_told_apart_by_their_colour_and_by_their_mark() {
+        for ground in GROUNDS {
+            for a in 0..FAMILIES {
+                for b in 0..a {
+                    let colours = (family_colour(a, ground), family_colour(b, ground));
                     let least = least_difference(colours.0, colours.1);
-                    let other_mark = mark(a, 2) != mark(b, 2);
-                    assert!(least > 5.0 || other_mark, "{a} {b} {ground:?}: {least}");
+                    assert!(least > 14.0, "{a} {b} {ground:?}: {least}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn any_two_curves_of_any_two_samples_are_told_apart_by_colour_or_mark() {
+        for ground in GROUNDS {
+            for (a, b) in (0..FAMILIES).flat_map(|a| (0..a).map(move |b| (a, b))) {
+                for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
+                    let colours = [(a, i), (b, j)].map(|(f, i)| colour(Some(f), i, 5, ground));
+                    let least = least_difference(colours[0], colours[1]);
+                    let other_mark = mark(Some(a), i) != mark(Some(b), j);
+                    assert!(least > 5.0 || other_mark, "{a} {i}, {b} {j}: {least}");
                 }
             }
         }
@@ -284,14 +341,14 @@ mod tests {
     #[test]
     fn colours_are_seen_on_their_ground() {
         for (ground, [r, g, b]) in [(Ground::Light, [255; 3]), (Ground::Dark, [27; 3])] {
-            for family in 0..FAMILIES {
+            for family in samples() {
                 for count in [5, 8, 20] {
                     for i in 0..count {
                         let colour = colour(family, i, count, ground);
                         let contrast = contrast(colour, [r, g, b]);
                         assert!(
                             contrast > 1.8,
-                            "{family} {i} of {count} {ground:?}: {contrast}"
+                            "{family:?} {i} of {count} {ground:?}: {contrast}"
                         );
                     }
                 }

@@ -114,6 +114,7 @@ fn title(figure: &PaperFigure, row: &PublishedSample) -> Title {
             row.wavelength_um, parameters.k2, parameters.kd, parameters.k1, row.n
         ),
         theory: "the paper's model".to_owned(),
+        samples: Vec::new(),
     }
 }
 

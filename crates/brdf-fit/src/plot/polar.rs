@@ -3,10 +3,10 @@
 use plotters::style::Color;
 
 use super::axis::Axis;
-use super::canvas::{Canvas, Place, Stands, drawn};
+use super::canvas::{Canvas, Place, Stands};
 use super::clip::within;
 use super::curves::{Curves, Styled, values};
-use super::frame::draw_title;
+use super::frame::{draw_title, drawn_with_samples};
 use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, ink};
 use super::theory::legend;
 use super::title::Title;
@@ -39,14 +39,14 @@ pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError
 
 /// What of the readings has no radius.
 pub(super) fn note_on_lost(curves: &Curves) -> Option<String> {
-    let negative = curves.readings().filter(|r| r.value < 0.0).count();
+    let negative = curves.negative;
     (negative > 0).then(|| format!("{} < 0 not shown", counted(negative, "reading")))
 }
 
 /// The drawing.
 pub(super) fn svg(title: &Title, curves: &Curves, note: Option<&str>) -> Result<String, PlotError> {
     let radii = Axis::linear(values(curves.plain()).filter(|value| *value > 0.0));
-    drawn(|canvas| {
+    drawn_with_samples(title, |canvas| {
         draw_title(canvas, title)?;
         draw_grid(canvas, &radii, &curves.view)?;
         draw_curves(canvas, &radii, curves)?;

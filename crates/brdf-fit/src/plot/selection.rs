@@ -24,6 +24,10 @@ pub struct Trace {
     pub readings: Vec<usize>,
     /// How many readings of the incidence are in the plane.
     pub all: usize,
+    /// How many of those are zero: a logarithmic axis has no place for them.
+    pub zero: usize,
+    /// How many of those are negative: the polar form has no place for them either.
+    pub negative: usize,
 }
 
 impl Selection {
@@ -66,6 +70,17 @@ impl Selection {
     pub fn all(&self) -> usize {
         self.traces.iter().map(|trace| trace.all).sum()
     }
+
+    /// How many of those are zero or negative.
+    pub fn not_positive(&self) -> usize {
+        let traces = self.traces.iter();
+        traces.map(|trace| trace.zero + trace.negative).sum()
+    }
+
+    /// How many of those are negative.
+    pub fn negative(&self) -> usize {
+        self.traces.iter().map(|trace| trace.negative).sum()
+    }
 }
 
 impl Trace {
@@ -82,10 +97,16 @@ impl Trace {
         let shown = readings
             .chunk_by(same)
             .flat_map(|chunk| thinned(chunk, |i| all[i].brdf));
+        let count = |is: &dyn Fn(f64) -> bool| {
+            let brdf = readings.iter().map(|(_, i)| all[*i].brdf);
+            brdf.filter(|brdf| is(*brdf)).count()
+        };
         Self {
             psi: of.psi,
             readings: shown.collect(),
             all: readings.len(),
+            zero: count(&|brdf| brdf == 0.0),
+            negative: count(&|brdf| brdf < 0.0),
         }
     }
 }
@@ -164,6 +185,20 @@ mod tests {
         assert!(selection.traces[0].readings.contains(&4321));
         let all = Selection::of(&scan, &View::default(), None, 1_000_000);
         assert_eq!(all.shown(), 9000);
+    }
+
+    #[test]
+    fn what_an_axis_has_no_place_for_is_counted_before_thinning() {
+        let many = (0..9000).map(|i| {
+            let brdf = 0.1 * f64::from(i % 3 - 1);
+            (10.0, -85.0 + 0.018 * f64::from(i), 0.0, brdf)
+        });
+        let selection = Selection::of(&scan(many), &View::default(), None, 100);
+        assert!(selection.shown() < 400);
+        assert_eq!(
+            (selection.not_positive(), selection.negative()),
+            (6000, 3000)
+        );
     }
 
     #[test]

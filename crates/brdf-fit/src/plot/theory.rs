@@ -3,9 +3,9 @@
 use plotters::style::Color;
 
 use super::axis::Axis;
-use super::canvas::{Canvas, drawn};
+use super::canvas::Canvas;
 use super::curves::{Curves, DECADES, Styled, lower_ends, values};
-use super::frame::{Frame, Key, Legend, draw_title};
+use super::frame::{Frame, Key, Legend, draw_title, drawn_with_samples};
 use super::style::{INK, ink};
 use super::title::Title;
 use super::view::{Scale, View};
@@ -58,7 +58,7 @@ pub(super) fn axis(curves: &Curves, scale: Scale) -> Axis {
 
 fn svg(title: &Title, curves: &Curves, y: Axis, note: Option<&str>) -> Result<String, PlotError> {
     let frame = Frame::over_theta(y);
-    drawn(|canvas| draw(canvas, &frame, title, curves, note))
+    drawn_with_samples(title, |canvas| draw(canvas, &frame, title, curves, note))
 }
 
 fn caption(title: &Title, curves: &Curves, axis: &str, more: &str) -> String {
@@ -81,13 +81,15 @@ fn caption(title: &Title, curves: &Curves, axis: &str, more: &str) -> String {
 
 /// What of the readings a logarithmic axis cannot show.
 pub(super) fn note_on_lost(curves: &Curves, axis: &Axis) -> Option<String> {
-    let count = |lost: &dyn Fn(f64) -> bool| curves.readings().filter(|r| lost(r.value)).count();
-    let not_positive = count(&|value| value <= 0.0);
-    let below = count(&|value| value > 0.0 && value < axis.low());
-    let notes = [(not_positive, "<= 0"), (below, "below the axis")]
-        .into_iter()
-        .filter(|(count, _)| *count > 0)
-        .map(|(count, what)| format!("{} {what} not shown", counted(count, "reading")));
+    let values = curves.readings().map(|reading| reading.value);
+    let below = values.filter(|value| *value > 0.0 && *value < axis.low());
+    let notes = [
+        (curves.not_positive, "<= 0"),
+        (below.count(), "below the axis"),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .map(|(count, what)| format!("{} {what} not shown", counted(count, "reading")));
     let notes: Vec<String> = notes.collect();
     (!notes.is_empty()).then(|| notes.join(", "))
 }

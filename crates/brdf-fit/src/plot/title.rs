@@ -18,6 +18,8 @@ pub(super) struct Title {
     pub(super) details: String,
     /// The theory in the words of a caption.
     pub(super) theory: String,
+    /// Of several samples a line each, below the figure.
+    pub(super) samples: Vec<String>,
 }
 
 impl Title {
@@ -32,6 +34,7 @@ impl Title {
                 short(fit.e_percent)
             ),
             theory: format!("model {model}, {}{}", model.description(), particulars(fit)),
+            samples: Vec::new(),
         }
     }
 }

@@ -75,6 +75,7 @@ pub fn trade_picture(
             sample: shortened(title),
             details: format!("{y_title} against {x_title}"),
             theory: String::new(),
+            samples: Vec::new(),
         },
         axes: [x_title, y_title],
         shown,
@@ -316,6 +317,7 @@ mod tests {
                 sample: String::new(),
                 details: String::new(),
                 theory: String::new(),
+                samples: Vec::new(),
             },
             axes: ["", ""],
         };

@@ -72,6 +72,14 @@ impl Quantity {
         }
     }
 
+    /// The name of its axis where there is little room.
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::Brdf => "f_r / (1/sr)",
+            Self::BrdfCosine => "f_r cos theta / (1/sr)",
+        }
+    }
+
     /// The name of its axis.
     pub fn axis_name(self) -> &'static str {
         match self {

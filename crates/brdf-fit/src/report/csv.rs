@@ -6,6 +6,7 @@ use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 
 use super::Report;
 use crate::measurement::Measurements;
+use crate::plot::theory_curves;
 use crate::stages::Fit;
 use crate::words::in_degrees;
 
@@ -143,6 +144,31 @@ pub fn write_theory(
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(THEORY_COLUMNS)?;
     write_readings(measurements, &[Some(*brdf)], &mut csv)?;
+    csv.flush()
+}
+
+/// Writes the theory alone, in the plane of incidence: f_r at these incidences psi in radians, at the
+/// view angles at which it is drawn; `name` says of what. The columns are those of
+/// [`write_theory`].
+pub fn write_theory_alone(
+    name: &str,
+    brdf: &AnyBrdf,
+    incidences: &[f64],
+    writer: impl io::Write,
+) -> io::Result<()> {
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(THEORY_COLUMNS)?;
+    for curve in theory_curves(brdf, incidences) {
+        for at in &curve.theory {
+            let mut record = [(); 8].map(|()| String::new());
+            name.clone_into(&mut record[0]);
+            record[2] = in_degrees(curve.psi).to_string();
+            record[3] = at.theta_deg.to_string();
+            "0".clone_into(&mut record[4]);
+            record[7] = at.value.to_string();
+            csv.write_record(record)?;
+        }
+    }
     csv.flush()
 }
 

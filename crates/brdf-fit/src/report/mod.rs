@@ -9,7 +9,7 @@ mod text;
 
 pub use csv::{
     CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, THEORY_COLUMNS, write_curves, write_models,
-    write_parameters, write_theory,
+    write_parameters, write_theory, write_theory_alone,
 };
 
 pub use document::{Document, DocumentError};

@@ -7,6 +7,7 @@ use egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, ProgressBar, Ui}
 use crate::intent::{Command, Intent};
 use crate::state::State;
 use crate::state::fitting::{FitChoice, FitRun, Progress, ReadingWeights, Scope, Stages, Start};
+use crate::widgets::{choose, named};
 
 /// Draws the fit.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -25,7 +26,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
             ("Both stages", Stages::Both),
         ] {
             if ui.add_enabled(enabled, Button::new(name)).clicked() {
-                intents.push(Intent::Fit(stages, Scope::Active));
+                intents.push(Intent::Fit(stages, Scope::Wavelength));
             }
         }
         let enabled = state.is_enabled(Command::FitAll);
@@ -48,11 +49,11 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 fn show_run(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
     if !run.is_running() {
         let words = match run.progress {
-            Progress::Cancelled => format!("cancelled: {} of {} were done", run.done, run.jobs),
-            _ if run.failed.is_empty() => format!("{} of {} fitted", run.fitted(), run.jobs),
+            Progress::Cancelled => format!("cancelled: {} of {} were done", run.done(), run.jobs()),
+            _ if run.failed.is_empty() => format!("{} of {} fitted", run.fitted(), run.jobs()),
             _ => {
                 let failed = run.failed.len();
-                format!("{} of {} fitted, {failed} failed", run.fitted(), run.jobs)
+                format!("{} of {} fitted, {failed} failed", run.fitted(), run.jobs())
             }
         };
         ui.label(words);
@@ -69,9 +70,10 @@ fn show_run(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
         let iteration = run.points.last().map_or(0, |point| point.iteration);
         let words = format!(
             "{} of {}: {phase}, iteration {iteration}",
-            run.done, run.jobs
+            run.done(),
+            run.jobs()
         );
-        let part = run.done as f32 / run.jobs.max(1) as f32;
+        let part = run.done() as f32 / run.jobs().max(1) as f32;
         ui.add(ProgressBar::new(part).text(words));
     });
 }
@@ -97,56 +99,49 @@ fn show_settings(ui: &mut Ui, choice: &mut FitChoice) {
             let limit = &mut choice.energy_limit_deg;
             let limit = DragValue::new(limit).range(0.0..=89.9).suffix("°");
             let response = ui.add_enabled(choice.energy, limit);
-            super::named(response, egui::Role::SpinButton, "limit of rho <= 1");
+            named(response, egui::Role::SpinButton, "limit of rho <= 1");
             ui.end_row();
         });
     ui.checkbox(&mut choice.compare, "Fit GGX and Beckmann beside it");
 }
 
 fn show_method(ui: &mut Ui, name: &str, method: &mut Method) {
-    let label = ui.label(name);
-    let combo = ComboBox::from_id_salt(name).width(150.0);
-    let shown = combo.selected_text(method.to_string()).show_ui(ui, |ui| {
-        for other in [Method::LevenbergMarquardt, Method::NelderMead] {
-            ui.selectable_value(method, other, other.to_string());
-        }
-    });
-    shown.response.labelled_by(label.id);
-    ui.end_row();
+    let all = [Method::LevenbergMarquardt, Method::NelderMead];
+    show_choice(ui, name, method, &all, Method::to_string);
 }
 
 fn show_weights(ui: &mut Ui, weights: &mut ReadingWeights) {
-    let name = |weights: ReadingWeights| match weights {
-        ReadingWeights::None => "none",
-        ReadingWeights::Sigma => "1/sigma²",
-        ReadingWeights::SolidAngle => "solid angle",
+    let name = |weights: &ReadingWeights| match weights {
+        ReadingWeights::None => "none".to_owned(),
+        ReadingWeights::Sigma => "1/sigma²".to_owned(),
+        ReadingWeights::SolidAngle => "solid angle".to_owned(),
     };
-    let label = ui.label("Weights of readings");
-    let combo = ComboBox::from_id_salt("weights").width(150.0);
-    let shown = combo.selected_text(name(*weights)).show_ui(ui, |ui| {
-        for other in [
-            ReadingWeights::None,
-            ReadingWeights::Sigma,
-            ReadingWeights::SolidAngle,
-        ] {
-            ui.selectable_value(weights, other, name(other));
-        }
-    });
-    shown.response.labelled_by(label.id);
-    ui.end_row();
+    let all = [
+        ReadingWeights::None,
+        ReadingWeights::Sigma,
+        ReadingWeights::SolidAngle,
+    ];
+    show_choice(ui, "Weights of readings", weights, &all, name);
 }
 
 fn show_loss(ui: &mut Ui, loss: &mut Option<Loss>) {
-    let name = |loss: Option<Loss>| {
+    let name = |loss: &Option<Loss>| {
         loss.map_or_else(|| "least squares".to_owned(), |loss| loss.to_string())
     };
-    let label = ui.label("Loss");
-    let combo = ComboBox::from_id_salt("loss").width(150.0);
-    let shown = combo.selected_text(name(*loss)).show_ui(ui, |ui| {
-        for other in [None, Some(Loss::Huber), Some(Loss::Tukey)] {
-            ui.selectable_value(loss, other, name(other));
-        }
-    });
-    shown.response.labelled_by(label.id);
+    let all = [None, Some(Loss::Huber), Some(Loss::Tukey)];
+    show_choice(ui, "Loss", loss, &all, name);
+}
+
+/// A row of the settings: a name, and a box from which one of some values is chosen.
+fn show_choice<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    name: &str,
+    value: &mut T,
+    all: &[T],
+    words: impl Fn(&T) -> String,
+) {
+    let label = ui.label(name);
+    let combo = ComboBox::from_id_salt(name).width(150.0);
+    choose(ui, combo, value, all.iter().cloned(), words).labelled_by(label.id);
     ui.end_row();
 }

@@ -7,11 +7,13 @@ use egui::{
     ComboBox, DragValue, Grid, Id, Panel, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
 };
 
-use super::{fit, named};
+use super::fit;
+use crate::axis::round_number_above;
 use crate::intent::{Command, Intent};
-use crate::plot::axis::round_number_above;
 use crate::state::State;
+use crate::state::fitting::Scope;
 use crate::state::sample::{Knobs, Sample};
+use crate::widgets::{choose, named};
 
 /// Draws the panel. What is turned here is applied before what follows from it is drawn; whether
 /// anything was turned.
@@ -50,20 +52,17 @@ pub fn show(ui: &mut Ui, state: &mut State) -> bool {
 fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {
     let knobs = sample.scan().knobs;
     let mut model = knobs.model;
-    let combo = ComboBox::from_id_salt("model").width(280.0).height(400.0);
-    let text = |model: Model| format!("{model}: {}", model.description());
-    let shown = combo
-        .selected_text(text(model))
-        .truncate()
-        .show_ui(ui, |ui| {
-            for other in Model::ALL {
-                ui.selectable_value(&mut model, other, text(other));
-            }
-        });
-    named(shown.response, Role::ComboBox, "model");
+    let combo = ComboBox::from_id_salt("model")
+        .width(280.0)
+        .height(400.0)
+        .truncate();
+    let text = |model: &Model| format!("{model}: {}", model.description());
+    let shown = choose(ui, combo, &mut model, Model::ALL, text);
+    named(shown, Role::ComboBox, "model");
     if model != knobs.model {
-        intents.push(Intent::Model(model));
+        intents.push(Intent::Model(model, Scope::Wavelength));
     }
+    show_model_for_all(ui, sample, intents);
     let fitted = sample.scan().fitted_knobs();
     Grid::new("parameters")
         .num_columns(5)
@@ -87,6 +86,19 @@ fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Int
             }
         }
     });
+}
+
+/// The model for the other wavelengths as well, where there are any.
+fn show_model_for_all(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
+    if sample.scans.len() < 2 {
+        return;
+    }
+    let model = sample.scan().knobs.model;
+    let differs = sample.scans.iter().any(|scan| scan.knobs.model != model);
+    let button = egui::Button::new("This model for all wavelengths").small();
+    if ui.add_enabled(differs, button).clicked() {
+        intents.push(Intent::Model(model, Scope::Sample));
+    }
 }
 
 /// A row: name, slider, number, back to the fit, hold.

@@ -2,15 +2,17 @@
 
 use brdf_fit::profile::ProfilePoint;
 use brdf_fit::watch::Phase;
-use egui::{Color32, Panel, RichText, ScrollArea, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints, Points, VLine};
+use egui::{Color32, Panel, Rangef, RichText, Role, ScrollArea, Ui};
+use egui_plot::{AxisHints, Legend, Line, Plot, PlotPoints, Points, VLine};
 
-use super::theme;
+use crate::axis::Axis;
 use crate::intent::Intent;
-use crate::plot::axis::Axis;
 use crate::state::State;
+use crate::state::fitting::Point;
 use crate::state::interface::ResultTab;
 use crate::state::sample::{Sample, Scan};
+use crate::theme;
+use crate::widgets::named;
 
 /// Draws the results.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -36,7 +38,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         };
         match state.interface.tab {
             ResultTab::Tables => show_tables(ui, sample),
-            ResultTab::Convergence => show_convergence(ui, state),
+            ResultTab::Convergence => show_convergence(ui, state, sample),
             ResultTab::Profile => show_profile(ui, sample.scan()),
             ResultTab::Reflectance => show_reflectance(ui, state, sample),
         }
@@ -45,15 +47,19 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 
 fn show_tables(ui: &mut Ui, sample: &Sample) {
     let scan = sample.scan();
+    let warning = ui.visuals().warn_fg_color;
+    if let Some(failure) = &scan.failure {
+        ui.colored_label(warning, format!("The last fit failed: {failure}"));
+    }
     let Some(report) = &scan.fitted else {
         ui.label("Not fitted yet.");
         return;
     };
+    if scan.failure.is_some() {
+        ui.colored_label(warning, "These tables are of the fit before it.");
+    }
     if scan.fit_shown().is_none() {
-        ui.colored_label(
-            ui.visuals().warn_fg_color,
-            "The parameters were turned since this fit.",
-        );
+        ui.colored_label(warning, "The parameters were turned since this fit.");
     }
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         for section in report.sections() {
@@ -67,41 +73,57 @@ fn show_tables(ui: &mut Ui, sample: &Sample) {
     });
 }
 
-/// A plot of the results, with logarithmic axes where they are asked for.
-fn result_plot<'a>(name: &str, x: Axis, y: Axis) -> Plot<'a> {
+/// A plot of the results, with logarithmic axes where they are asked for, and their names.
+fn result_plot<'a>(name: &str, [x, y]: [Axis; 2], [x_name, y_name]: [&str; 2]) -> Plot<'a> {
+    let x_hints = AxisHints::new_x()
+        .label(x_name)
+        .label_spacing(NUMBERS_APART)
+        .formatter(move |mark, range| x.label(mark, range));
+    let y_hints = AxisHints::new_y()
+        .label(y_name)
+        .min_thickness(60.0)
+        .formatter(move |mark, range| y.label(mark, range));
     Plot::new(name.to_owned())
-        .x_grid_spacer(move |input| x.grid(&input))
-        .x_axis_formatter(move |mark, range| x.label(mark, range))
+        .x_grid_spacer(move |input| x.grid_along(&input))
         .y_grid_spacer(move |input| y.grid(&input))
-        .y_axis_formatter(move |mark, range| y.label(mark, range))
-        .y_axis_min_width(60.0)
+        .custom_x_axes(vec![x_hints])
+        .custom_y_axes(vec![y_hints])
         .label_formatter(|_| None)
         .show_crosshair(false)
 }
 
-fn named_plot(response: &egui_plot::PlotResponse<()>, name: &str) {
-    response
-        .response
-        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
+/// Numbers along an axis are at least so far apart, in points, and clear from the second on: lines of
+/// the grid between them have none.
+const NUMBERS_APART: Rangef = Rangef {
+    min: 31.0,
+    max: 36.0,
+};
+
+/// The iterations of the fit that runs, or of the last one, of the scan that is shown.
+fn steps<'a>(state: &'a State, sample: &'a Sample) -> &'a [Point] {
+    let runs = state.run.as_ref().filter(|run| run.is_running());
+    match runs.filter(|run| run.scan == sample.scan_id()) {
+        Some(run) => &run.points,
+        None => &sample.scan().steps,
+    }
 }
 
-fn show_convergence(ui: &mut Ui, state: &State) {
-    let Some(run) = state.run.as_ref().filter(|run| !run.points.is_empty()) else {
-        ui.label("No stage has been fitted yet.");
+fn show_convergence(ui: &mut Ui, state: &State, sample: &Sample) {
+    let steps = steps(state, sample);
+    if steps.is_empty() {
+        ui.label("No stage of this wavelength has been fitted yet.");
         return;
-    };
+    }
     let ground = theme::ground(ui.ctx());
-    let plot = result_plot("convergence", Axis::Linear, Axis::Logarithmic)
-        .x_axis_label("iteration")
-        .y_axis_label("E / %")
-        .legend(Legend::default());
+    let axes = [Axis::Linear, Axis::Logarithmic];
+    let plot = result_plot("convergence", axes, ["iteration", "E / %"]).legend(Legend::default());
     let response = plot.show(ui, |plot_ui| {
         for (i, phase) in [Phase::Stage1, Phase::Stage2].into_iter().enumerate() {
-            let of_phase = run.points.iter().filter(|point| point.phase == phase);
+            let of_phase = steps.iter().filter(|point| point.phase == phase);
             let points: Vec<[f64; 2]> = of_phase
                 .filter_map(|p| Some([p.iteration as f64, Axis::Logarithmic.place(p.e_percent)?]))
                 .collect();
-            let colour = theme::colour(0, i, 2, ground);
+            let colour = theme::plain(i, ground);
             let name = phase.to_string();
             plot_ui.line(Line::new(name.clone(), PlotPoints::from(points.clone())).color(colour));
             plot_ui.points(
@@ -111,7 +133,11 @@ fn show_convergence(ui: &mut Ui, state: &State) {
             );
         }
     });
-    named_plot(&response, "plot of E against iteration");
+    named(
+        response.response,
+        Role::Image,
+        "plot of E against iteration",
+    );
 }
 
 fn show_profile(ui: &mut Ui, scan: &Scan) {
@@ -124,10 +150,8 @@ fn show_profile(ui: &mut Ui, scan: &Scan) {
     let log = |x: f64| Axis::Logarithmic.place(x);
     let point = |p: &ProfilePoint| Some([log(p.parameters.k1)?, log(100.0 * p.error)?]);
     let points: Vec<[f64; 2]> = profile.iter().filter_map(point).collect();
-    let colour = theme::colour(0, 0, 2, theme::ground(ui.ctx()));
-    let plot = result_plot("profile", Axis::Logarithmic, Axis::Logarithmic)
-        .x_axis_label("k1")
-        .y_axis_label("lowest E / %");
+    let colour = theme::plain(0, theme::ground(ui.ctx()));
+    let plot = result_plot("profile", [Axis::Logarithmic; 2], ["k1", "lowest E / %"]);
     let here = log(scan.knobs.at.k1);
     let weak = ui.visuals().weak_text_color();
     let response = plot.show(ui, |plot_ui| {
@@ -140,16 +164,15 @@ fn show_profile(ui: &mut Ui, scan: &Scan) {
             plot_ui.vline(VLine::new("k1", k1).color(weak));
         }
     });
-    named_plot(&response, "plot of the profile of k1");
+    named(response.response, Role::Image, "plot of the profile of k1");
 }
 
 fn show_reflectance(ui: &mut Ui, state: &State, sample: &Sample) {
     let points = state.shown.reflectance(sample.scan_id()).to_vec();
-    let colour = theme::colour(0, 0, 2, theme::ground(ui.ctx()));
+    let colour = theme::plain(0, theme::ground(ui.ctx()));
     let limit = Color32::from_rgb(0xd5, 0x5e, 0x00);
-    let plot = result_plot("reflectance", Axis::Linear, Axis::Linear)
-        .x_axis_label("incidence psi / deg")
-        .y_axis_label("rho")
+    let names = ["incidence psi / deg", "rho"];
+    let plot = result_plot("reflectance", [Axis::Linear; 2], names)
         .include_x(0.0)
         .include_x(90.0)
         .include_y(0.0);
@@ -164,5 +187,9 @@ fn show_reflectance(ui: &mut Ui, state: &State, sample: &Sample) {
             plot_ui.hline(egui_plot::HLine::new("1", 1.0).color(limit));
         }
     });
-    named_plot(&response, "plot of the hemispherical reflectance");
+    named(
+        response.response,
+        Role::Image,
+        "plot of the hemispherical reflectance",
+    );
 }

@@ -1,13 +1,16 @@
 //! The samples at the left, each with its incidences: what is shown, in which colour, and how well
 //! the theory describes it.
 
+use brdf_fit::plot::mark;
 use brdf_fit::words::{counted, digits};
-use egui::{ComboBox, Grid, Panel, RichText, Role, ScrollArea, Ui, vec2};
+use egui::{Color32, ComboBox, Grid, Panel, RichText, Role, ScrollArea, TextStyle, Ui, vec2};
 
-use super::{degrees, named, theme};
 use crate::intent::Intent;
+use crate::plot::items::mark_at;
 use crate::state::State;
 use crate::state::sample::Sample;
+use crate::theme;
+use crate::widgets::{degrees, named};
 
 /// Draws the samples.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -44,25 +47,63 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
             if button.on_hover_text(close).clicked() {
                 intents.push(Intent::Close(sample.id));
             }
-            let colour = theme::colour(sample.family, 0, 1, theme::ground(ui.ctx()));
-            let name = RichText::new(&sample.name);
-            let name = if state.samples.len() > 1 {
-                name.color(colour)
-            } else {
-                name
-            };
-            let button = egui::Button::selectable(active, name).truncate();
-            let full = ui.available_width();
-            let response = ui.add_sized(vec2(full, ui.spacing().interact_size.y), button);
-            let hover = format!("{}\n{}", sample.source, sample.description);
-            if response.on_hover_text(hover.trim_end()).clicked() {
-                intents.push(Intent::Activate(sample.id));
-            }
+            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                show_key(ui, state, sample);
+                show_name(ui, sample, active, intents);
+            });
         });
     });
     if active {
         ui.indent("scan", |ui| show_scan(ui, state, sample, intents));
     }
+}
+
+/// The colour and the mark that a sample is known by, where there are others.
+fn show_key(ui: &mut Ui, state: &State, sample: &Sample) {
+    let Some(family) = state.family_of(sample) else {
+        return;
+    };
+    let colour = theme::family_colour(family, theme::ground(ui.ctx()));
+    let (_, place) = ui.allocate_space(vec2(12.0, ui.spacing().interact_size.y));
+    let key = mark_at(mark(Some(family), 0), place.center(), 4.5, colour);
+    ui.painter().add(key);
+}
+
+fn show_name(ui: &mut Ui, sample: &Sample, active: bool, intents: &mut Vec<Intent>) {
+    let room = ui.available_width();
+    let padding = 2.0 * ui.spacing().button_padding.x;
+    let name = elided(ui, &sample.name, room - padding);
+    let button = egui::Button::selectable(active, name);
+    let response = ui.add_sized(vec2(room, ui.spacing().interact_size.y), button);
+    let response = named(response, Role::Button, &sample.name);
+    let hover = format!("{}\n{}\n{}", sample.name, sample.source, sample.description);
+    if response.on_hover_text(hover.trim_end()).clicked() {
+        intents.push(Intent::Activate(sample.id));
+    }
+}
+
+/// A name as it fits into a width: of a long one its start and its end, where names differ most.
+fn elided(ui: &Ui, name: &str, room: f32) -> String {
+    let font = TextStyle::Button.resolve(ui.style());
+    let width = |text: String| {
+        let galley = ui
+            .painter()
+            .layout_no_wrap(text, font.clone(), Color32::WHITE);
+        galley.size().x
+    };
+    let letters: Vec<char> = name.chars().collect();
+    let kept = |count: usize| -> String {
+        let end = count / 2;
+        let start = letters[..count - end].iter();
+        let end = letters[letters.len() - end..].iter();
+        start.chain(&['…']).chain(end).collect()
+    };
+    if width(name.to_owned()) <= room {
+        return name.to_owned();
+    }
+    let counts = (2..letters.len()).rev();
+    let fitting = counts.map(kept).find(|text| width(text.clone()) <= room);
+    fitting.unwrap_or_else(|| "…".to_owned())
 }
 
 fn show_scan(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {
@@ -100,7 +141,7 @@ fn show_scan(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Inte
             for (i, incidence) in scan.incidences.iter().enumerate() {
                 let colour = if incidence.shown {
                     place += 1;
-                    theme::colour(sample.family, place - 1, count, ground)
+                    theme::colour(state.family_of(sample), place - 1, count, ground)
                 } else {
                     ui.visuals().weak_text_color()
                 };

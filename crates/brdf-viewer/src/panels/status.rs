@@ -13,7 +13,6 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                 ui.label(format!("reading {}", state.reading));
                 ui.separator();
             }
-            ui.label(&state.status);
             let readings: usize = state.visible().map(|s| s.scan().readings()).sum();
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 for (command, name) in [
@@ -28,6 +27,11 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                     }
                 }
                 ui.weak(format!("{readings} readings"));
+                // What is left between them belongs to what happened last.
+                let rest = egui::Layout::left_to_right(egui::Align::Center);
+                ui.with_layout(rest, |ui| {
+                    ui.add(egui::Label::new(&state.status).truncate());
+                });
             });
         });
     });

@@ -1,14 +1,14 @@
 //! f_r over the signed view angle: all incidences in one plot, or one plot for each, with the
 //! residuals below.
 
-use brdf_fit::plot::{Layout, Reading, View, value_range};
+use brdf_fit::plot::{Layout, Reading, View};
 use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, Plot, PlotResponse};
 
-use super::axis::{Axis, degrees};
-use super::hover::{Plots, read_out};
+use super::hover::{Plots, read_out, read_out_residuals};
 use super::items::{self, Drawing};
 use super::{Drawn, title};
+use crate::axis::{Axis, degrees};
 use crate::state::State;
 
 /// The part of the height that the residuals take.
@@ -24,63 +24,52 @@ const ABOVE_PANEL: f32 = 7.0;
 const LEAST_APART: f64 = 34.0;
 
 /// A panel is not lower than this, in points.
-const LEAST_PANEL: f32 = 120.0;
+const LEAST_PANEL: f32 = 80.0;
 
 /// All incidences in one plot.
 pub fn together(ui: &mut Ui, plots: &Plots) {
     let all: Vec<&Drawn> = plots.drawn.iter().collect();
-    let group = Some((Id::unique("theta"), [true, false]));
-    pair(
-        ui,
-        plots,
-        &all,
-        ["theory", "residuals"],
-        ui.available_size(),
-        group,
-    );
+    let place = Place {
+        state: plots.state,
+        name: "theory",
+        size: ui.available_size(),
+        group: Some((Id::unique("theta"), [true, false])),
+        named: true,
+    };
+    pair(ui, plots, &all, "residuals", &place);
 }
 
 /// Theory and experiment, and where they are asked for the residuals below.
-fn pair(
-    ui: &mut Ui,
-    plots: &Plots,
-    drawn: &[&Drawn],
-    [theory_name, residual_name]: [&str; 2],
-    size: Vec2,
-    group: Group,
-) {
-    let state = plots.state;
-    let below = if state.view.residuals {
-        size.y * RESIDUALS
-    } else {
-        0.0
-    };
-    let place = Place {
-        state,
-        name: theory_name,
-        size: vec2(size.x, size.y - below),
-        group,
-    };
-    theory(ui, plots, drawn, &place);
-    if state.view.residuals {
-        let gap = ui.spacing().item_spacing.y;
-        let place = Place {
-            name: residual_name,
-            size: vec2(size.x, (below - gap).max(1.0)),
-            ..place
-        };
-        residual(ui, plots, drawn, &place);
+fn pair(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], residuals: &str, place: &Place) {
+    if !place.state.view.residuals {
+        theory(ui, plots, drawn, place);
+        return;
     }
+    let Vec2 { x, y } = place.size;
+    let below = y * RESIDUALS;
+    let above = Place {
+        size: vec2(x, y - below),
+        ..*place
+    };
+    theory(ui, plots, drawn, &above);
+    let gap = ui.spacing().item_spacing.y;
+    let below = Place {
+        name: residuals,
+        size: vec2(x, (below - gap).max(1.0)),
+        ..*place
+    };
+    residual(ui, plots, drawn, &below);
 }
 
 /// One plot for each incidence, with the same axes.
 pub fn panels(ui: &mut Ui, plots: &Plots) {
     let panels = by_incidence(plots.drawn);
+    name_axes(ui, &plots.state.view);
     let whole = ui.available_size();
     let columns = columns(panels.len(), whole);
     let rows = panels.len().div_ceil(columns);
     let gap = ui.spacing().item_spacing;
-    let least = LEAST_PANEL * if plots.state.view.residuals { 1.5 } else { 1.0 };
+    let least = LEAST_PANEL * if plots.state.view.residuals { 2.0 } else { 1.0 };
     let size = vec2(
         (whole.x - gap.x * (columns - 1) as f32) / columns as f32,
         ((whole.y - gap.y * rows as f32) / rows as f32).max(least),
@@ -99,16 +88,33 @@ pub fn panels(ui: &mut Ui, plots: &Plots) {
         });
 }
 
+/// The names of the axes, once for all panels.
+fn name_axes(ui: &mut Ui, view: &View) {
+    let below = if view.residuals {
+        "; below: measured - theory"
+    } else {
+        ""
+    };
+    let narrow = ui.available_width() < 1.5 * NARROW;
+    let [value, theta] = axis_names(view, narrow);
+    ui.label(format!("{value} over {theta}{below}"));
+}
+
 fn show_panel(ui: &mut Ui, plots: &Plots, panel: &[&Drawn], place: usize, size: Vec2) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         // The uppermost number at the axis stands half above it.
         ui.add_space(ABOVE_PANEL);
-        let size = vec2(size.x, size.y - ABOVE_PANEL);
-        // Panels with residuals share the view angle only: the two kinds have other heights.
-        let group = Some((Id::unique("panels"), [true, !plots.state.view.residuals]));
         let names = [format!("theory {place}"), format!("residuals {place}")];
-        pair(ui, plots, panel, [&names[0], &names[1]], size, group);
+        let place = Place {
+            state: plots.state,
+            name: &names[0],
+            size: vec2(size.x, size.y - ABOVE_PANEL),
+            // Panels with residuals share the view angle only: the two kinds have other heights.
+            group: Some((Id::unique("panels"), [true, !plots.state.view.residuals])),
+            named: false,
+        };
+        pair(ui, plots, panel, &names[1], &place);
     });
 }
 
@@ -128,15 +134,28 @@ pub(super) fn columns(count: usize, size: Vec2) -> usize {
 
 type Group = Option<(Id, [bool; 2])>;
 
+/// The names of the axes of values and of view angles, short ones where there is little room.
+fn axis_names(view: &View, narrow: bool) -> [String; 2] {
+    let (quantity, theta) = (view.quantity, view.theta_name());
+    if narrow {
+        let theta = theta.trim_start_matches("view angle ").to_owned();
+        [quantity.short_name().to_owned(), theta]
+    } else {
+        [quantity.axis_name().to_owned(), theta]
+    }
+}
+
 /// Where a plot is, and what it shares with others.
 struct Place<'a> {
     state: &'a State,
     name: &'a str,
     size: Vec2,
     group: Group,
+    /// Whether its axes have names; those of panels stand once for all.
+    named: bool,
 }
 
-/// A plot that is narrower has no names at its axes, in points.
+/// A plot that is narrower has short names at its axes, in points.
 const NARROW: f32 = 400.0;
 
 /// A plot over the view angle. `lowest` of those above each other has the name of the axis.
@@ -156,10 +175,11 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
         .formatter(move |mark, range| axis.label(mark, range))
         .label_spacing(Rangef::new(11.0, 15.0))
         .min_thickness(if narrow { 36.0 } else { AXIS_WIDTH });
-    if !narrow {
+    if place.named {
         y = y.label(value);
         if lowest {
-            x = x.label(place.state.view.theta_name());
+            let [_, theta] = axis_names(&place.state.view, narrow);
+            x = x.label(theta);
         }
     }
     let mut plot = Plot::new(place.name)
@@ -183,12 +203,11 @@ fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> P
 
 fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
     let (state, axis) = (place.state, plots.axis);
-    // All panels have the same axis: that of all curves.
-    let all = plots.drawn.iter().map(|drawn| drawn.curve);
-    let range = value_range(all, state.view.scale).unwrap_or((0.001, 1.0));
+    let range = plots.range;
     let end = |value: f64| axis.place(value).unwrap_or(0.0);
     let lowest = !state.view.residuals;
-    let plot = over_theta(place, axis, state.view.quantity.axis_name(), lowest)
+    let [name, _] = axis_names(&state.view, place.size.x < NARROW);
+    let plot = over_theta(place, axis, &name, lowest)
         .include_y(end(range.0))
         .include_y(end(range.1));
     let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
@@ -200,25 +219,16 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
                     if let Some(mirror) = state.view.mirror_deg(curve.psi) {
                         items::upright(transform, mirror, colour, shapes);
                     }
-                    let faint = colour.gamma_multiply(0.25);
-                    items::band(transform, axis, &curve.theory, faint, shapes);
+                    items::band(transform, axis, &curve.theory, colour, shapes);
                     let value = |reading: &Reading| reading.value;
-                    items::readings(
-                        transform,
-                        axis,
-                        &curve.readings,
-                        value,
-                        one.mark,
-                        colour,
-                        shapes,
-                    );
+                    items::readings(transform, axis, &curve.readings, value, one.look(), shapes);
                     items::theory(transform, axis, &curve.theory, colour, shapes);
                 },
             ));
         }
     });
-    let at = |reading: &Reading| Some([reading.theta_deg, axis.place(reading.value)?]);
-    read_out(&response, drawn, at);
+    let at = |theta_deg: f64, value: f64| Some([theta_deg, axis.place(value)?]);
+    read_out(&response, plots, drawn, at);
     if plots.state.view.layout == Layout::Panels {
         name_panel(ui, &state.view, &response, drawn);
     }
@@ -226,11 +236,7 @@ fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
 }
 
 fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
-    let all = plots.drawn.iter().flat_map(|drawn| &drawn.curve.readings);
-    let largest = all
-        .map(|reading| reading.residual().abs())
-        .fold(0.0, f64::max);
-    let reach = if largest > 0.0 { 1.1 * largest } else { 1.0 };
+    let reach = plots.reach;
     let plot = over_theta(place, Axis::Linear, "measured - theory", true)
         .include_y(-reach)
         .include_y(reach);
@@ -239,25 +245,14 @@ fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
             plot_ui.add(Drawing::new(
                 format!("residuals {i}"),
                 move |transform, shapes| {
-                    let readings = &one.curve.readings;
+                    let (axis, readings) = (Axis::Linear, &one.curve.readings);
                     let value = Reading::residual;
-                    let (mark, colour) = (one.mark, one.colour);
-                    items::readings(
-                        transform,
-                        Axis::Linear,
-                        readings,
-                        value,
-                        mark,
-                        colour,
-                        shapes,
-                    );
+                    items::readings(transform, axis, readings, value, one.look(), shapes);
                 },
             ));
         }
     });
-    read_out(&response, drawn, |reading| {
-        Some([reading.theta_deg, reading.residual()])
-    });
+    read_out_residuals(&response, plots, drawn);
     describe(&response, "Residual plot", drawn);
 }
 

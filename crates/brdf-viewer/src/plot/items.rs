@@ -3,16 +3,22 @@
 use std::ops::RangeInclusive;
 
 use brdf_fit::plot::{MarkShape, Reading, Theory};
-use egui::{Color32, Mesh, Pos2, Shape, Stroke, Ui, epaint::PathShape, pos2, vec2};
+use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui, epaint::PathShape, pos2, vec2};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform};
 
-use super::axis::Axis;
+use crate::axis::Axis;
 
 /// Farther from the plot than this, in points, a position is not told apart.
 const FAR: f32 = 1e5;
 
 /// Half the size of a mark, in points.
 const MARK: f32 = 2.6;
+
+/// More readings of one curve than this overlap each other.
+const DENSE: usize = 250;
+
+/// Opacity of a band.
+const BAND: f32 = 0.25;
 
 type Draw<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
@@ -177,23 +183,35 @@ pub fn band(
     shapes: &mut Vec<Shape>,
 ) {
     let bottom = transform.bounds().min()[1];
-    let edge = |t: &Theory| {
+    let ends = theory.iter().map(|t| {
         let sigma = t.sigma?;
-        let high = place(transform, [t.theta_deg, axis.place(t.value + sigma)?]);
+        let high = axis.place(t.value + sigma)?;
         // What lies below a logarithmic axis ends at its bottom.
         let low = axis.place(t.value - sigma).unwrap_or(bottom).max(bottom);
-        Some([high, place(transform, [t.theta_deg, low])])
-    };
+        Some([[t.theta_deg, high], [t.theta_deg, low]])
+    });
+    ribbon(transform, ends, colour, shapes);
+}
+
+/// The area between two lines, interrupted where there is nothing.
+pub fn ribbon(
+    transform: &PlotTransform,
+    ends: impl Iterator<Item = Option<[[f64; 2]; 2]>>,
+    colour: Color32,
+    shapes: &mut Vec<Shape>,
+) {
+    let faint = colour.gamma_multiply(BAND);
     let mut mesh = Mesh::default();
     let mut last: Option<u32> = None;
-    for t in theory {
-        let Some([high, low]) = edge(t) else {
+    for ends in ends {
+        let Some(ends) = ends else {
             last = None;
             continue;
         };
         let here = mesh.vertices.len() as u32;
-        mesh.colored_vertex(high, colour);
-        mesh.colored_vertex(low, colour);
+        for end in ends {
+            mesh.colored_vertex(place(transform, end), faint);
+        }
         if let Some(before) = last {
             mesh.add_triangle(before, before + 1, here);
             mesh.add_triangle(before + 1, here, here + 1);
@@ -205,37 +223,77 @@ pub fn band(
     }
 }
 
+/// How readings of a curve look.
+#[derive(Clone, Copy)]
+pub struct Look {
+    /// The mark.
+    pub mark: MarkShape,
+    /// The colour.
+    pub colour: Color32,
+}
+
 /// Readings with their error bars. `value` says what of a reading is shown.
 pub fn readings(
     transform: &PlotTransform,
     axis: Axis,
     readings: &[Reading],
     value: impl Fn(&Reading) -> f64,
-    mark: MarkShape,
+    look: Look,
+    shapes: &mut Vec<Shape>,
+) {
+    let bottom = transform.bounds().min()[1];
+    for reading in readings {
+        let (x, value) = (reading.theta_deg, value(reading));
+        let ends = reading.sigma.and_then(|sigma| {
+            let high = axis.place(value + sigma)?;
+            let low = axis.place(value - sigma).unwrap_or(bottom);
+            Some([[x, low], [x, high]])
+        });
+        error_bar(transform, ends, look.colour, shapes);
+    }
+    let at = |reading: &Reading| Some([reading.theta_deg, axis.place(value(reading))?]);
+    let points: Vec<[f64; 2]> = readings.iter().filter_map(at).collect();
+    marks(transform, &points, look, shapes);
+}
+
+/// The error bar of a reading, where it has one.
+pub fn error_bar(
+    transform: &PlotTransform,
+    ends: Option<[[f64; 2]; 2]>,
     colour: Color32,
     shapes: &mut Vec<Shape>,
 ) {
-    let frame = transform.frame().expand(MARK);
-    let bottom = transform.bounds().min()[1];
-    let bars = Stroke::new(1.0, colour.gamma_multiply(0.55));
-    for reading in readings {
-        let value = value(reading);
-        let x = reading.theta_deg;
-        if let Some(sigma) = reading.sigma
-            && let Some(high) = axis.place(value + sigma)
-        {
-            let low = axis.place(value - sigma).unwrap_or(bottom);
-            let ends = [place(transform, [x, low]), place(transform, [x, high])];
-            shapes.push(Shape::line_segment(ends, bars));
-        }
-        let Some(y) = axis.place(value) else {
-            continue;
-        };
-        let position = place(transform, [x, y]);
-        if frame.contains(position) {
-            shapes.push(mark_at(mark, position, MARK, colour));
-        }
+    if let Some(seen) = ends.and_then(|ends| segment(transform, ends, MARK)) {
+        let bar = Stroke::new(1.0, colour.gamma_multiply(0.55));
+        shapes.push(Shape::line_segment(seen, bar));
     }
+}
+
+/// The marks of readings, as far as they are within the plot.
+pub fn marks(
+    transform: &PlotTransform,
+    points: &[[f64; 2]],
+    Look { mark, colour }: Look,
+    shapes: &mut Vec<Shape>,
+) {
+    let frame = transform.frame().expand(MARK);
+    let positions = points.iter().map(|point| place(transform, *point));
+    let seen = positions.filter(|position| frame.contains(*position));
+    if points.len() > DENSE {
+        shapes.push(squares(seen, colour));
+    } else {
+        shapes.extend(seen.map(|position| mark_at(mark, position, MARK, colour)));
+    }
+}
+
+/// Squares in one shape, which is drawn many times faster than as many marks with smooth borders.
+fn squares(positions: impl Iterator<Item = Pos2>, colour: Color32) -> Shape {
+    let mut mesh = Mesh::default();
+    let size = vec2(1.6, 1.6) * MARK;
+    for position in positions {
+        mesh.add_colored_rect(Rect::from_center_size(position, size), colour);
+    }
+    Shape::mesh(mesh)
 }
 
 /// A mark of a reading.
@@ -251,6 +309,14 @@ pub fn mark_at(mark: MarkShape, at: Pos2, size: f32, colour: Color32) -> Shape {
             Shape::rect_filled(square, 0.0, colour)
         }
         MarkShape::Triangle => polygon(&[(0.0, -1.25), (1.15, 0.85), (-1.15, 0.85)]),
+        MarkShape::Inverted => polygon(&[(0.0, 1.25), (-1.15, -0.85), (1.15, -0.85)]),
+        MarkShape::Cross => {
+            let bar = |width: f32, height: f32| {
+                let bar = egui::Rect::from_center_size(at, vec2(width, height) * size);
+                Shape::rect_filled(bar, 0.0, colour)
+            };
+            Shape::Vec(vec![bar(2.5, 0.85), bar(0.85, 2.5)])
+        }
         MarkShape::Diamond => polygon(&[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)]),
     }
 }
@@ -263,7 +329,6 @@ pub fn upright(transform: &PlotTransform, x: f64, colour: Color32, shapes: &mut 
 
 #[cfg(test)]
 mod tests {
-    use egui::Rect;
     use egui::Vec2b;
 
     use super::*;

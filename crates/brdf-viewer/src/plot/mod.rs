@@ -1,6 +1,5 @@
 //! The middle of the window: theory against experiment.
 
-pub mod axis;
 pub mod cartesian;
 pub mod hover;
 pub mod items;
@@ -11,8 +10,9 @@ use brdf_fit::plot::{Curve, Layout, MarkShape, mark};
 use egui::{CentralPanel, Color32, Id, Ui};
 
 use crate::intent::Intent;
-use crate::panels::{degrees, theme};
 use crate::state::State;
+use crate::theme;
+use crate::widgets::degrees;
 
 /// A curve with how it looks.
 pub struct Drawn<'a> {
@@ -24,6 +24,16 @@ pub struct Drawn<'a> {
     pub colour: Color32,
     /// The mark of its readings.
     pub mark: MarkShape,
+}
+
+impl Drawn<'_> {
+    /// How its readings look.
+    pub fn look(&self) -> items::Look {
+        items::Look {
+            mark: self.mark,
+            colour: self.colour,
+        }
+    }
 }
 
 /// Draws the plot.
@@ -51,15 +61,15 @@ pub fn show(ui: &mut Ui, state: &mut State, intents: &mut Vec<Intent>) {
     });
 }
 
-/// So many columns of readings the plot can show: one is two points wide. It grows in steps, so
-/// that the drag of a border does not thin anew in every frame.
+/// So many columns of readings the plot can show: one is four points wide, less than a mark. It
+/// grows in steps, so that the drag of a border does not thin anew in every frame.
 fn columns(state: &State, size: egui::Vec2) -> usize {
-    const STEP: f32 = 64.0;
+    const STEP: f32 = 32.0;
     let width = match state.view.layout {
         Layout::Panels => size.x / cartesian::columns(incidences(state), size) as f32,
         Layout::Together | Layout::Polar => size.x,
     };
-    ((width / (2.0 * STEP)).ceil() * STEP).clamp(STEP, 1024.0) as usize
+    ((width / (4.0 * STEP)).ceil() * STEP).clamp(STEP, 1024.0) as usize
 }
 
 /// How many panels there are: one for each incidence of all samples that are shown.
@@ -76,12 +86,13 @@ fn drawn<'a>(ui: &Ui, state: &'a State) -> Vec<Drawn<'a>> {
     let mut all = Vec::new();
     for sample in state.visible() {
         let curves = state.shown.curves(sample.scan_id());
+        let family = state.family_of(sample);
         for (i, curve) in curves.iter().enumerate() {
             all.push(Drawn {
                 curve,
                 sample: &sample.name,
-                colour: theme::colour(sample.family, i, curves.len(), ground),
-                mark: mark(sample.family, i),
+                colour: theme::colour(family, i, curves.len(), ground),
+                mark: mark(family, i),
             });
         }
     }

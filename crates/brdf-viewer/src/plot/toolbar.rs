@@ -5,14 +5,16 @@ use brdf_fit::read::Side;
 use brdf_fit::words::counted;
 use egui::{Checkbox, ComboBox, Ui};
 
-use super::axis::Axis;
 use crate::intent::{Command, Intent};
-use crate::panels::{degrees, named};
 use crate::state::State;
+use crate::widgets::{choose, degrees, named};
 
 /// Draws the line, and below it what the plot cannot show.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.horizontal_wrapped(|ui| {
+        // Two lines shall do beside both panels in the smallest window.
+        ui.spacing_mut().item_spacing.x = 4.0;
+        ui.spacing_mut().button_padding.x = 3.0;
         for (command, name) in [
             (Command::Together, "Together"),
             (Command::Panels, "Panels"),
@@ -27,11 +29,10 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                 intents.push(Intent::Do(command));
             }
         }
-        ui.separator();
         let cartesian = state.view.layout != Layout::Polar;
         for (command, name) in [
             (Command::Logarithmic, "log"),
-            (Command::TimesCosine, "× cos theta"),
+            (Command::TimesCosine, "× cos θ"),
             (Command::Residuals, "residuals"),
         ] {
             let mut on = state.is_on(command) == Some(true);
@@ -41,7 +42,6 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
                 intents.push(Intent::Do(command));
             }
         }
-        ui.separator();
         show_side(ui, state, intents);
         show_planes(ui, state, intents);
         if ui.button("Reset zoom").clicked() {
@@ -55,20 +55,15 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 }
 
 fn show_side(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
-    let name = |side: Side| match side {
-        Side::Source => "theta > 0: source side",
-        Side::Forward => "theta > 0: forward side",
+    let name = |side: &Side| match side {
+        Side::Source => "theta > 0: source".to_owned(),
+        Side::Forward => "theta > 0: forward".to_owned(),
     };
     let mut view = state.view;
-    let combo = ComboBox::from_id_salt("side").width(150.0);
-    let shown = combo
-        .selected_text(name(view.theta_positive))
-        .show_ui(ui, |ui| {
-            for side in [Side::Source, Side::Forward] {
-                ui.selectable_value(&mut view.theta_positive, side, name(side));
-            }
-        });
-    named(shown.response, egui::Role::ComboBox, "positive side");
+    let combo = ComboBox::from_id_salt("side").width(110.0);
+    let sides = [Side::Source, Side::Forward];
+    let shown = choose(ui, combo, &mut view.theta_positive, sides, name);
+    named(shown, egui::Role::ComboBox, "positive side");
     if view != state.view {
         intents.push(Intent::View(view));
     }
@@ -83,18 +78,15 @@ fn show_planes(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     if planes.iter().all(|plane| *plane == 0.0) {
         return;
     }
-    let name = |azimuth: f64| {
+    let name = |azimuth: &f64| {
         let other = degrees(azimuth + std::f64::consts::PI);
-        format!("phi = {} / {other}", degrees(azimuth))
+        format!("phi = {} / {other}", degrees(*azimuth))
     };
     let mut view = state.view;
     let combo = ComboBox::from_id_salt("plane").width(130.0);
-    let shown = combo.selected_text(name(view.azimuth)).show_ui(ui, |ui| {
-        for &plane in planes {
-            ui.selectable_value(&mut view.azimuth, plane, name(plane));
-        }
-    });
-    named(shown.response, egui::Role::ComboBox, "plane of view");
+    let planes = planes.iter().copied();
+    let shown = choose(ui, combo, &mut view.azimuth, planes, name);
+    named(shown, egui::Role::ComboBox, "plane of view");
     if view != state.view {
         intents.push(Intent::View(view));
     }
@@ -102,45 +94,52 @@ fn show_planes(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 
 /// What of the readings the plot does not show, in words.
 fn left_out(state: &State) -> String {
-    let (mut drawn, mut in_plane, mut all, mut without_place) = (0, 0, 0, 0);
-    let axis = match state.view.layout {
-        Layout::Polar => Axis::Linear,
-        _ => Axis::from(state.view.scale),
-    };
+    let (mut drawn, mut in_plane, mut all) = (0, 0, 0);
+    let (mut not_positive, mut negative) = (0, 0);
     for sample in state.visible() {
-        let id = sample.scan_id();
-        if let Some(selection) = state.shown.selection(id) {
+        if let Some(selection) = state.shown.selection(sample.scan_id()) {
             drawn += selection.shown();
             in_plane += selection.all();
+            not_positive += selection.not_positive();
+            negative += selection.negative();
         }
         let shown = sample.scan().incidences.iter().filter(|i| i.shown);
         all += shown.map(|i| i.readings).sum::<usize>();
-        let curves = state.shown.curves(id).iter();
-        let readings = curves.flat_map(|curve| &curve.readings);
-        without_place += readings.filter(|r| axis.place(r.value).is_none()).count();
     }
     let mut words = Vec::new();
-    if all > in_plane {
-        words.push(format!(
-            "{} out of this plane",
-            counted(all - in_plane, "reading")
-        ));
-    }
-    if in_plane > drawn {
-        words.push(format!(
-            "{drawn} of {in_plane} readings drawn: the first, lowest and highest of each {}",
-            if state.view.scale == Scale::Linear {
-                "column"
-            } else {
-                "column of points"
-            }
-        ));
-    }
-    if without_place > 0 {
-        words.push(format!(
-            "{} <= 0 cannot be shown on a logarithmic axis",
-            counted(without_place, "reading")
-        ));
+    let mut tell = |count: usize, what: String| {
+        if count > 0 {
+            words.push(what);
+        }
+    };
+    let out = all.saturating_sub(in_plane);
+    tell(
+        out,
+        format!("{} out of this plane", counted(out, "reading")),
+    );
+    tell(
+        in_plane - drawn,
+        format!(
+            "{drawn} of {in_plane} readings drawn: the first, lowest and highest of each column of \
+             points"
+        ),
+    );
+    match (state.view.layout, state.view.scale) {
+        (Layout::Polar, _) => tell(
+            negative,
+            format!(
+                "{} < 0 cannot be shown as a radius",
+                counted(negative, "reading")
+            ),
+        ),
+        (_, Scale::Logarithmic) => tell(
+            not_positive,
+            format!(
+                "{} <= 0 cannot be shown on a logarithmic axis",
+                counted(not_positive, "reading")
+            ),
+        ),
+        (_, Scale::Linear) => {}
     }
     words.join("; ")
 }

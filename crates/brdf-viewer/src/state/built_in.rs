@@ -5,6 +5,7 @@ use brdf_fit::Measurements;
 use brdf_fit::read::ReadError;
 
 use super::sample::{Scan, published_name};
+use crate::job::Opened;
 
 macro_rules! measured {
     ($name:literal) => {
@@ -44,13 +45,13 @@ pub fn entries() -> Vec<BuiltIn> {
     measured.chain(published).collect()
 }
 
-/// The source and the scans of an entry; `None` where there is none of this number.
-pub fn open(entry: usize) -> Option<Result<(String, Vec<Scan>), ReadError>> {
+/// The scans of an entry; `None` where there is none of this number.
+pub fn open(entry: usize) -> Option<Result<Opened, ReadError>> {
     if let Some((path, text)) = MEASURED.get(entry) {
         return Some(scans(path, text));
     }
     let row = PUBLISHED.get(entry - MEASURED.len())?;
-    Some(Ok((published_name(row), vec![Scan::published(row)])))
+    Some(Ok(opened(published_name(row), vec![Scan::published(row)])))
 }
 
 /// The entry whose source this is.
@@ -66,9 +67,17 @@ pub fn text_of(source: &str) -> Option<&'static str> {
     found.map(|(_, text)| *text)
 }
 
-fn scans(path: &str, text: &str) -> Result<(String, Vec<Scan>), ReadError> {
+fn opened(source: String, scans: Vec<Scan>) -> Opened {
+    Opened {
+        source,
+        file: None,
+        scans,
+    }
+}
+
+fn scans(path: &str, text: &str) -> Result<Opened, ReadError> {
     let convention = brdf_fit::read::Convention::default();
     let all = Measurements::from_reader_with(text.as_bytes(), path, convention)?;
     let scans = all.by_wavelength().into_iter().map(Scan::new);
-    Ok((path.to_owned(), scans.collect()))
+    Ok(opened(path.to_owned(), scans.collect()))
 }

@@ -2,7 +2,6 @@
 
 use std::time::Instant;
 
-use brdf_core::ModelParameters;
 use brdf_fit::report::Depth;
 use brdf_fit::robust::Loss;
 use brdf_fit::watch::{Phase, Step};
@@ -10,7 +9,8 @@ use brdf_fit::weights::Weights;
 use brdf_fit::{FitOptions, Method, RefractiveIndex};
 use serde::{Deserialize, Serialize};
 
-use super::sample::{Knobs, ScanId};
+use super::sample::{Knobs, SampleId, ScanId};
+use crate::job::Stop;
 
 /// Which stages of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,11 +23,13 @@ pub enum Stages {
     Both,
 }
 
-/// What is fitted.
+/// Which scans are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
     /// The wavelength of the active sample that is shown.
-    Active,
+    Wavelength,
+    /// All wavelengths of the active sample.
+    Sample,
     /// All wavelengths of all samples.
     All,
 }
@@ -147,8 +149,6 @@ pub struct Point {
     pub iteration: u64,
     /// E in percent over the readings of the stage.
     pub e_percent: f64,
-    /// The parameters there.
-    pub parameters: Option<ModelParameters>,
 }
 
 /// Where a run is.
@@ -167,10 +167,7 @@ pub enum Progress {
 /// The fits that the worker makes, or has made last.
 #[derive(Debug, Clone)]
 pub struct FitRun {
-    /// How many fits there are.
-    pub jobs: usize,
-    /// How many have ended, well or not.
-    pub done: usize,
+    queue: Vec<Queued>,
     /// Why some failed.
     pub failed: Vec<String>,
     /// The scan of the fit that runs, or ran last.
@@ -185,24 +182,52 @@ pub struct FitRun {
     pub started: Instant,
 }
 
+/// One of these fits.
+#[derive(Debug, Clone)]
+struct Queued {
+    scan: ScanId,
+    stop: Stop,
+    ended: bool,
+}
+
 impl FitRun {
-    /// A run that has just been asked for.
-    pub fn new(jobs: usize, scan: ScanId) -> Self {
-        Self {
-            jobs,
-            done: 0,
-            failed: Vec::new(),
+    /// A run that has just been asked for; `None` of no scan.
+    pub fn new(scans: &[ScanId]) -> Option<Self> {
+        let queued = |&scan: &ScanId| Queued {
             scan,
+            stop: Stop::default(),
+            ended: false,
+        };
+        Some(Self {
+            queue: scans.iter().map(queued).collect(),
+            failed: Vec::new(),
+            scan: *scans.first()?,
             phase: None,
             points: Vec::new(),
             progress: Progress::Running,
             started: Instant::now(),
-        }
+        })
+    }
+
+    /// What ends the fit of each scan.
+    pub fn stops(&self) -> impl Iterator<Item = (ScanId, Stop)> {
+        let all = self.queue.iter();
+        all.map(|queued| (queued.scan, queued.stop.clone()))
+    }
+
+    /// How many fits there are.
+    pub fn jobs(&self) -> usize {
+        self.queue.len()
+    }
+
+    /// How many have ended, well or not.
+    pub fn done(&self) -> usize {
+        self.queue.iter().filter(|queued| queued.ended).count()
     }
 
     /// How many fits have succeeded.
     pub fn fitted(&self) -> usize {
-        self.done - self.failed.len()
+        self.done() - self.failed.len()
     }
 
     /// Whether the worker is still at it.
@@ -210,8 +235,30 @@ impl FitRun {
         matches!(self.progress, Progress::Running | Progress::Cancelling)
     }
 
+    /// Ends all fits.
+    pub fn cancel(&mut self) {
+        self.progress = Progress::Cancelling;
+        for queued in &self.queue {
+            queued.stop.ask();
+        }
+    }
+
+    /// Ends the fits of a sample that is closed. The others go on.
+    pub fn leave_out(&mut self, sample: SampleId) {
+        self.queue.retain(|queued| {
+            let gone = queued.scan.sample == sample && !queued.ended;
+            if gone {
+                queued.stop.ask();
+            }
+            !gone
+        });
+    }
+
     /// Takes over a step of the fit of a scan.
     pub fn step(&mut self, scan: ScanId, step: &Step) {
+        if !self.queue.iter().any(|queued| queued.scan == scan) {
+            return;
+        }
         if scan != self.scan {
             self.scan = scan;
             self.points.clear();
@@ -222,8 +269,21 @@ impl FitRun {
                 phase: step.phase,
                 iteration: step.iteration,
                 e_percent,
-                parameters: step.parameters,
             });
         }
+    }
+
+    /// Takes over that the fit of a scan has ended, or why it has failed; its iterations. `None`
+    /// where the run is not of this scan, or no longer.
+    pub fn end(&mut self, scan: ScanId, failure: Option<&str>) -> Option<Vec<Point>> {
+        let mut queue = self.queue.iter_mut();
+        let queued = queue.find(|queued| queued.scan == scan && !queued.ended)?;
+        queued.ended = true;
+        self.failed.extend(failure.map(str::to_owned));
+        Some(if self.scan == scan {
+            std::mem::take(&mut self.points)
+        } else {
+            Vec::new()
+        })
     }
 }

@@ -19,38 +19,46 @@ pub struct Change {
 /// The changes that were made, and those that were taken back.
 #[derive(Debug, Clone, Default)]
 pub struct History {
-    past: Vec<Change>,
-    future: Vec<Change>,
+    past: Vec<Vec<Change>>,
+    future: Vec<Vec<Change>>,
 }
 
 impl History {
-    /// Remembers a change. What was taken back before can no longer be done again.
-    pub fn push(&mut self, change: Change) {
+    /// Remembers changes that were made as one. What was taken back before can no longer be done
+    /// again.
+    pub fn push(&mut self, changes: Vec<Change>) {
+        if changes.is_empty() {
+            return;
+        }
         self.future.clear();
-        self.past.push(change);
+        self.past.push(changes);
         if self.past.len() > MOST {
             self.past.remove(0);
         }
     }
 
-    /// The change to take back.
-    pub fn undo(&mut self) -> Option<Change> {
-        let change = self.past.pop()?;
-        self.future.push(change);
-        Some(change)
+    /// The changes to take back.
+    pub fn undo(&mut self) -> Option<Vec<Change>> {
+        let changes = self.past.pop()?;
+        self.future.push(changes.clone());
+        Some(changes)
     }
 
-    /// The change to do again.
-    pub fn redo(&mut self) -> Option<Change> {
-        let change = self.future.pop()?;
-        self.past.push(change);
-        Some(change)
+    /// The changes to do again.
+    pub fn redo(&mut self) -> Option<Vec<Change>> {
+        let changes = self.future.pop()?;
+        self.past.push(changes.clone());
+        Some(changes)
     }
 
     /// Forgets the changes of a sample that is closed.
     pub fn forget(&mut self, sample: SampleId) {
-        self.past.retain(|change| change.scan.sample != sample);
-        self.future.retain(|change| change.scan.sample != sample);
+        for side in [&mut self.past, &mut self.future] {
+            for changes in side.iter_mut() {
+                changes.retain(|change| change.scan.sample != sample);
+            }
+            side.retain(|changes| !changes.is_empty());
+        }
     }
 
     /// Whether there is a change to take back.

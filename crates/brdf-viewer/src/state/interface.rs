@@ -4,17 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::intent::Export;
 
-/// A side of the window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// The samples.
-    Samples,
-    /// The parameters and the fit.
-    Parameters,
-    /// The results.
-    Results,
-}
-
 /// A table or a picture of the results.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -1,13 +1,17 @@
 //! A sample: its scans, one for each wavelength, with the parameters that are turned.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use brdf_core::published::PublishedSample;
 use brdf_core::{AnyBrdf, ModelParameters};
 use brdf_fit::model::{Held, Model, Parameter};
+use brdf_fit::output::resolved;
 use brdf_fit::report::Report;
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex, stages};
+
+use super::fitting::Point;
+use crate::job::Opened;
 
 /// Which sample, as long as it is open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -35,8 +39,12 @@ pub struct Sample {
     pub id: SampleId,
     /// Its short name.
     pub name: String,
-    /// Where it is from: the path of a file as it was given, or what the built-in menu says.
+    /// What was opened: the path of a scan or of a fit as JSON, or what the built-in menu says.
     pub source: String,
+    /// The file of its readings, where they are from one.
+    pub file: Option<PathBuf>,
+    /// How many samples its source has.
+    pub siblings: usize,
     /// What the file says it is.
     pub description: String,
     /// Its family of colours.
@@ -66,6 +74,10 @@ pub struct Scan {
     pub loaded: Knobs,
     /// The last fit.
     pub fitted: Option<Arc<Report>>,
+    /// The iterations of its stages.
+    pub steps: Vec<Point>,
+    /// Why there was no fit after it.
+    pub failure: Option<String>,
 }
 
 /// One incidence of a scan.
@@ -171,6 +183,8 @@ impl Scan {
             settled: knobs,
             loaded: knobs,
             fitted: None,
+            steps: Vec::new(),
+            failure: None,
         }
     }
 
@@ -186,16 +200,20 @@ impl Scan {
             self.knobs.at = fit.at();
         }
         self.fitted = Some(Arc::new(report));
+        self.failure = None;
     }
 
-    /// The parameters of the last fit; those before any fit where there is none.
+    /// The parameters of the last fit; those before any fit where there is none. What is held is no
+    /// parameter and stays as it is.
     pub fn fitted_knobs(&self) -> Knobs {
         let fit = self.fitted.as_ref().and_then(|report| report.fit.as_ref());
-        fit.map_or(self.loaded, |fit| Knobs {
-            model: fit.model(),
-            at: fit.at(),
+        let loaded = (self.loaded.model, self.loaded.at);
+        let (model, at) = fit.map_or(loaded, |fit| (fit.model(), fit.at()));
+        Knobs {
+            model,
+            at,
             held: self.knobs.held,
-        })
+        }
     }
 
     /// The last fit, where the parameters are still its own.
@@ -219,23 +237,40 @@ impl Scan {
 }
 
 impl Sample {
-    /// A sample from the scans of a file.
-    pub fn new(id: SampleId, source: &str, family: usize, scans: Vec<Scan>) -> Self {
-        let metadata = scans.first().map(|scan| &scan.measurements.metadata);
-        let description = metadata
-            .and_then(|metadata| metadata.get("sample"))
-            .unwrap_or_default()
-            .to_owned();
+    /// A sample that was opened as one of so many.
+    pub fn new(id: SampleId, opened: Opened, family: usize, siblings: usize) -> Self {
+        let first = opened.scans.first().map(|scan| &*scan.measurements);
+        let name = first.map_or(opened.source.as_str(), |first| &first.source);
+        let description = first.and_then(|first| first.metadata.get("sample"));
         Self {
             id,
-            name: short_name(source),
-            source: source.to_owned(),
-            description,
+            name: short_name(name),
+            description: description.unwrap_or_default().to_owned(),
+            source: opened.source,
+            file: opened.file,
+            siblings,
             family,
             visible: true,
-            scans,
+            scans: opened.scans,
             current: 0,
         }
+    }
+
+    /// Whether its readings are from the file at a resolved path.
+    pub fn is_scan_at(&self, target: &Path) -> bool {
+        self.file
+            .as_ref()
+            .is_some_and(|file| resolved(file) == *target)
+    }
+
+    /// Whether a file at a resolved path is what was opened.
+    pub fn is_from(&self, target: &Path) -> bool {
+        resolved(Path::new(&self.source)) == *target
+    }
+
+    /// Whether any of its wavelengths is fitted.
+    pub fn is_fitted(&self) -> bool {
+        self.scans.iter().any(|scan| scan.fitted.is_some())
     }
 
     /// The scan that is shown.
@@ -250,9 +285,18 @@ impl Sample {
 
     /// Which scan is shown.
     pub fn scan_id(&self) -> ScanId {
+        self.id_of(self.current)
+    }
+
+    /// All of its scans.
+    pub fn scan_ids(&self) -> impl Iterator<Item = ScanId> {
+        (0..self.scans.len()).map(|wavelength| self.id_of(wavelength))
+    }
+
+    fn id_of(&self, wavelength: usize) -> ScanId {
         ScanId {
             sample: self.id,
-            wavelength: self.current,
+            wavelength,
         }
     }
 }

@@ -39,27 +39,35 @@ pub struct Saved {
     /// The files that were opened last, the latest first.
     pub recent: Vec<PathBuf>,
     /// What was open: files, and entries of the built-in menu.
-    pub open: Vec<Opened>,
+    pub open: Vec<Reopened>,
     /// The size of the window, in points.
     pub window: [f32; 2],
 }
 
 /// Something that was open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Opened {
+pub struct Reopened {
     /// A file, or an entry of the built-in menu.
     pub source: String,
     /// The angular convention of the file.
     pub convention: Convention,
 }
 
-impl Opened {
-    /// What a sample was opened from.
-    pub fn of(sample: &Sample) -> Self {
-        Self {
-            source: sample.source.clone(),
-            convention: sample.scan().measurements.convention,
+impl Reopened {
+    /// What samples were opened from, each source once.
+    pub fn all(samples: &[Sample]) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for sample in samples {
+            // A fit with several scans is opened once.
+            if sample.siblings > 1 && all.iter().any(|one| one.source == sample.source) {
+                continue;
+            }
+            all.push(Self {
+                source: sample.source.clone(),
+                convention: sample.scan().measurements.convention,
+            });
         }
+        all
     }
 }
 

@@ -111,19 +111,20 @@ impl Shown {
 impl State {
     /// Works out what has changed since the last time.
     pub fn refresh(&mut self) {
-        let samples = &self.samples;
+        let Self { samples, shown, .. } = self;
         let is_open = |id: &ScanId| samples.iter().any(|sample| sample.id == id.sample);
-        self.shown.scans.retain(|id, _| is_open(id));
-        for sample in self.samples.iter().filter(|sample| sample.visible) {
-            let shown = self.shown.scans.entry(sample.scan_id()).or_default();
+        shown.scans.retain(|id, _| is_open(id));
+        for sample in samples.iter().filter(|sample| sample.visible) {
+            let shown = shown.scans.entry(sample.scan_id()).or_default();
             shown.refresh_curves(sample, &self.view, self.columns);
         }
-        if let Some(sample) = self.active_sample() {
-            let (id, weights) = (sample.scan_id(), self.choice.weights);
-            let sample = sample.clone();
-            let shown = self.shown.scans.entry(id).or_default();
-            shown.refresh_errors(&sample, weights, &self.choice.weights());
-            shown.refresh_reflectance(&sample);
+        let mut active = samples
+            .iter()
+            .filter(|sample| Some(sample.id) == self.active);
+        if let Some(sample) = active.next() {
+            let shown = shown.scans.entry(sample.scan_id()).or_default();
+            shown.refresh_errors(sample, self.choice.weights, &self.choice.weights());
+            shown.refresh_reflectance(sample);
         }
     }
 }
@@ -181,9 +182,10 @@ impl ShownScan {
         });
         self.errors.of((knobs, reading_weights), |_| {
             let criterion = criterion.as_ref().map_err(Clone::clone)?;
+            let (error, incidences) = criterion.error_and_by_incidence(&knobs.at);
             Ok(Errors {
-                e_percent: 100.0 * criterion.error(&knobs.at),
-                incidences: criterion.by_incidence(&knobs.at),
+                e_percent: 100.0 * error,
+                incidences,
             })
         });
     }

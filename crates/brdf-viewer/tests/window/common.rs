@@ -127,8 +127,14 @@ pub(crate) fn shows(window: &Window, words: &str) -> bool {
     window.query_all_by_label_contains(words).next().is_some()
 }
 
-/// Chooses an entry of a menu.
+/// Chooses an entry of a menu, and waits for what it does.
 pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
+    open_menu_and_click(window, title, entry);
+    settle(window);
+}
+
+/// Chooses an entry of a menu.
+pub(crate) fn open_menu_and_click(window: &mut Window, title: &str, entry: &str) {
     window.get_by_role_and_label(Role::Button, title).click();
     window.run();
     // The key stands behind the name. A button of the same name may stand elsewhere, too.
@@ -139,7 +145,6 @@ pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
     });
     let found = entries.last().unwrap();
     found.click();
-    settle(window);
 }
 
 /// Types into the number box of a parameter.
@@ -179,29 +184,113 @@ pub(crate) fn drop_file(window: &mut Window, name: &str, text: &str) {
     settle(window);
 }
 
-/// The painted lines of a colour, on the screen.
-pub(crate) fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
-    fn collect(shape: &Shape, colour: Color32, lines: &mut Vec<Vec<Pos2>>) {
+/// A dropped file of the system.
+#[derive(Debug)]
+struct OnDisk(PathBuf);
+
+impl egui::DroppedFile for OnDisk {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+/// Drops a file of the system onto the window.
+pub(crate) fn drop_path(window: &mut Window, path: &Path) {
+    let file = OnDisk(path.to_owned());
+    window.input_mut().dropped_files.push(Arc::new(file));
+    settle(window);
+}
+
+/// Opens a path by the box.
+pub(crate) fn open_path(window: &mut Window, path: &Path) {
+    menu(window, "File", "Open path...");
+    enter_path(window, path);
+    click_role(window, Role::Button, "Open");
+}
+
+/// Puts another path into the box of the dialog.
+pub(crate) fn enter_path(window: &mut Window, path: &Path) {
+    window
+        .get_by_role_and_label(Role::TextInput, "Path of the file")
+        .focus();
+    window.run();
+    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
+    window.run();
+    let text = path.display().to_string();
+    window
+        .get_by_role_and_label(Role::TextInput, "Path of the file")
+        .type_text(&text);
+    window.run();
+}
+
+/// Every shape that is painted, those within others by themselves.
+pub(crate) fn painted(window: &Window) -> Vec<&Shape> {
+    fn collect<'a>(shape: &'a Shape, all: &mut Vec<&'a Shape>) {
         match shape {
-            Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, colour, lines)),
-            Shape::Path(path) if path.stroke.color == ColorMode::Solid(colour) => {
-                lines.push(path.points.clone());
-            }
-            _ => {}
+            Shape::Vec(shapes) => shapes.iter().for_each(|s| collect(s, all)),
+            shape => all.push(shape),
         }
     }
-    let mut lines = Vec::new();
+    let mut all = Vec::new();
     for clipped in &window.output().shapes {
-        collect(&clipped.shape, colour, &mut lines);
+        collect(&clipped.shape, &mut all);
     }
-    lines
+    all
+}
+
+/// Every text that is painted, with its place.
+pub(crate) fn painted_texts(window: &Window) -> Vec<(String, egui::Rect)> {
+    let text = |shape: &Shape| match shape {
+        Shape::Text(text) => Some((text.galley.text().to_owned(), text.visual_bounding_rect())),
+        _ => None,
+    };
+    painted(window).into_iter().filter_map(text).collect()
+}
+
+/// The painted lines of a colour, on the screen.
+pub(crate) fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
+    let line = |shape: &Shape| match shape {
+        Shape::Path(path) if path.stroke.color == ColorMode::Solid(colour) => {
+            Some(path.points.clone())
+        }
+        _ => None,
+    };
+    painted(window).into_iter().filter_map(line).collect()
+}
+
+/// The ends of the painted segments of a colour, on the screen.
+pub(crate) fn painted_segments(window: &Window, colour: Color32) -> Vec<[Pos2; 2]> {
+    let segment = |shape: &Shape| match shape {
+        Shape::LineSegment { points, stroke } if stroke.color == colour => Some(*points),
+        _ => None,
+    };
+    painted(window).into_iter().filter_map(segment).collect()
+}
+
+/// The corners of the painted areas of a colour, on the screen.
+pub(crate) fn painted_areas(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
+    let area = |shape: &Shape| match shape {
+        Shape::Mesh(mesh) if mesh.vertices.first().is_some_and(|v| v.color == colour) => {
+            Some(mesh.vertices.iter().map(|vertex| vertex.pos).collect())
+        }
+        _ => None,
+    };
+    painted(window).into_iter().filter_map(area).collect()
+}
+
+/// The transform of a plot.
+pub(crate) fn transform_of(window: &Window, plot: &str) -> egui_plot::PlotTransform {
+    let id = brdf_viewer::plot::id(&window.state().state, plot);
+    let memory = PlotMemory::load(&window.ctx, id).expect("no such plot");
+    memory.transform()
 }
 
 /// The longest painted line of a colour in the coordinates of a plot.
 pub(crate) fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec<PlotPoint> {
-    let id = brdf_viewer::plot::id(&window.state().state, plot);
-    let memory = PlotMemory::load(&window.ctx, id).expect("no such plot");
-    let transform = memory.transform();
+    let transform = transform_of(window, plot);
     let lines = painted_lines(window, colour);
     let longest = lines.into_iter().max_by_key(Vec::len).unwrap_or_default();
     longest
@@ -210,19 +299,21 @@ pub(crate) fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec
         .collect()
 }
 
-/// How many marks of a colour are painted: filled circles and polygons.
-pub(crate) fn painted_marks(window: &Window, colour: Color32) -> usize {
-    fn count(shape: &Shape, colour: Color32) -> usize {
-        match shape {
-            Shape::Vec(shapes) => shapes.iter().map(|s| count(s, colour)).sum(),
-            Shape::Circle(circle) => usize::from(circle.fill == colour),
-            Shape::Rect(rect) => usize::from(rect.fill == colour),
-            Shape::Path(path) => usize::from(path.fill == colour),
-            _ => 0,
+/// The middles of the painted marks of a colour: filled circles and polygons.
+pub(crate) fn painted_marks(window: &Window, colour: Color32) -> Vec<Pos2> {
+    let mark = |shape: &Shape| match shape {
+        Shape::Circle(circle) if circle.fill == colour => Some(circle.center),
+        Shape::Rect(rect) if rect.fill == colour => Some(rect.rect.center()),
+        Shape::Path(path) if path.fill == colour => {
+            let sum = path
+                .points
+                .iter()
+                .fold(egui::Vec2::ZERO, |sum, p| sum + p.to_vec2());
+            Some((sum / path.points.len() as f32).to_pos2())
         }
-    }
-    let shapes = window.output().shapes.iter();
-    shapes.map(|clipped| count(&clipped.shape, colour)).sum()
+        _ => None,
+    };
+    painted(window).into_iter().filter_map(mark).collect()
 }
 
 /// The colour of an incidence of the only sample.
@@ -230,7 +321,12 @@ pub(crate) fn colour_of(window: &Window, i: usize) -> Color32 {
     let state = &window.state().state;
     let sample = state.active_sample().unwrap();
     let shown = sample.scan().shown_psi().len();
-    let [r, g, b] = brdf_fit::plot::colour(sample.family, i, shown, brdf_fit::plot::Ground::Light);
+    let [r, g, b] = brdf_fit::plot::colour(
+        state.family_of(sample),
+        i,
+        shown,
+        brdf_fit::plot::Ground::Light,
+    );
     Color32::from_rgb(r, g, b)
 }
 

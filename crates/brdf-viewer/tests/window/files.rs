@@ -4,48 +4,18 @@
 use std::path::{Path, PathBuf};
 
 use crate::common::{
-    NoDialogs, Window, click, click_role, drop_file, empty, menu, settle, shows, type_number,
-    window_with, with_z307, z307,
+    NoDialogs, Window, click, click_role, drop_file, drop_path, empty, enter_path, menu,
+    open_built_in, open_path, settle, shows, type_number, window_with, with_z307, z307,
 };
 use brdf_fit::read::{Convention, Side};
 use brdf_fit::report::Document;
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::{Export, Intent};
+use brdf_viewer::job::Event;
 use brdf_viewer::state::saved::Settings;
-use brdf_viewer::worker::{Event, Events};
+use brdf_viewer::worker::Events;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
-
-/// Opens a path by the box.
-fn open_path(window: &mut Window, path: &Path) {
-    menu(window, "File", "Open path...");
-    enter_path(window, path);
-    click_role(window, Role::Button, "Open");
-}
-
-/// Puts another path into the box of the dialog.
-fn enter_path(window: &mut Window, path: &Path) {
-    window
-        .get_by_role_and_label(Role::TextInput, "Path of the file")
-        .focus();
-    window.run();
-    window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
-    window.run();
-    let text = path.display().to_string();
-    window
-        .get_by_role_and_label(Role::TextInput, "Path of the file")
-        .type_text(&text);
-    window.run();
-}
-
-fn export(window: &mut Window, entry: &str, path: &Path) {
-    menu(window, "File", entry);
-    enter_path(window, path);
-    click_role(window, Role::Button, "Write");
-    let errors = window.state().state.errors();
-    assert!(errors.is_empty(), "{errors:?}");
-    assert!(path.exists(), "{}", path.display());
-}
 
 fn names(window: &Window) -> Vec<String> {
     window
@@ -153,7 +123,7 @@ fn the_dialogs_of_the_system_are_used_where_there_are_any() {
     menu(&mut window, "File", "Open path...");
     click(&mut window, "Browse...");
     settle(&mut window);
-    assert_eq!(names(&window), ["in", "in"]);
+    assert_eq!(names(&window), ["in", "in (2)"]);
 }
 
 fn wait_for(window: &mut Window, path: &Path) {
@@ -477,5 +447,199 @@ fn without_dialogs_open_asks_for_a_path() {
     window.key_press(egui::Key::Escape);
     settle(&mut window);
     assert!(window.state().state.dialog.is_none());
-    let _ = export;
+}
+
+/// Writes, and expects to be refused.
+fn refused(window: &mut Window, entry: &str, path: &Path) -> String {
+    let before = window.state().state.errors().len();
+    menu(window, "File", entry);
+    enter_path(window, path);
+    click_role(window, Role::Button, "Write");
+    let errors = window.state().state.errors();
+    assert_eq!(errors.len(), before + 1, "{errors:?}");
+    errors.last().unwrap().clone()
+}
+
+#[test]
+fn a_scan_that_was_opened_by_its_fit_is_not_written_over_but_the_fit_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scan, json) = (
+        folder.path().join("paint.csv"),
+        folder.path().join("fit.json"),
+    );
+    std::fs::write(&scan, z307()).unwrap();
+    let mut window = empty();
+    open_path(&mut window, &scan);
+    click(&mut window, "Both stages");
+    export_fit(&mut window, &json);
+    menu(&mut window, "File", "Close all samples");
+    open_path(&mut window, &json);
+    let curves = "Export theory and readings as CSV...";
+    let error = refused(&mut window, curves, &scan);
+    assert!(error.contains("is an open scan"), "{error}");
+    assert_eq!(std::fs::read_to_string(&scan).unwrap(), z307());
+    let error = refused(&mut window, curves, &json);
+    assert!(error.contains("is the fit of open samples"), "{error}");
+    // The fit itself is brought up to date.
+    click(&mut window, "Fit all");
+    export_fit(&mut window, &json);
+    assert_eq!(Document::read(&json).unwrap().reports.len(), 2);
+    assert_eq!(std::fs::read_to_string(&scan).unwrap(), z307());
+}
+
+#[test]
+fn a_fit_of_several_files_opens_a_sample_for_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fits.json");
+    let mut window = empty();
+    let mut reports = Vec::new();
+    for name in ["a.csv", "b.csv"] {
+        let scan = folder.path().join(name);
+        std::fs::write(&scan, z307()).unwrap();
+        open_path(&mut window, &scan);
+        click(&mut window, "Both stages");
+        let state = &window.state().state;
+        let report = state.active_sample().unwrap().scan().fitted.clone();
+        reports.push((*report.unwrap()).clone());
+    }
+    let text = serde_json::to_string(&Document::new(reports)).unwrap();
+    std::fs::write(&json, text).unwrap();
+    menu(&mut window, "File", "Close all samples");
+    open_path(&mut window, &json);
+    assert_eq!(names(&window), ["a", "b"]);
+    let state = &window.state().state;
+    assert!(state.samples.iter().all(|sample| sample.scans.len() == 2));
+    assert!(state.samples.iter().all(|s| s.scan().fitted.is_some()));
+    assert_eq!(state.saved([900.0, 600.0]).open.len(), 1);
+    // Both fits are written where they are from; with one of them closed it would be lost.
+    export_fit(&mut window, &json);
+    assert_eq!(Document::read(&json).unwrap().reports.len(), 2);
+    click(&mut window, "close a");
+    let error = refused(&mut window, "Save fit as JSON...", &json);
+    assert!(error.contains("2 scans, of which 1 are open"), "{error}");
+}
+
+#[test]
+fn a_relative_path_is_found_again_from_any_folder() {
+    let mut window = empty();
+    let path = Path::new("../../data/measured/z307_on_aluminium.csv");
+    window
+        .state_mut()
+        .state
+        .apply(Intent::Open(vec![path.to_owned()]));
+    settle(&mut window);
+    let state = &window.state().state;
+    assert!(state.recent[0].is_absolute());
+    let saved = state.saved([900.0, 600.0]);
+    assert!(Path::new(&saved.open[0].source).is_absolute());
+}
+
+#[test]
+fn a_file_of_the_system_is_dropped_and_remembered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("paint.csv");
+    std::fs::write(&path, z307()).unwrap();
+    let mut window = empty();
+    drop_path(&mut window, &path);
+    assert_eq!(names(&window), ["paint"]);
+    assert_eq!(window.state().state.recent, [path]);
+    drop_path(&mut window, folder.path());
+    assert!(window.state().state.errors()[0].contains("is no regular file"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_refused_and_what_comes_after_it_is_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.csv");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let mut window = with_z307();
+    open_path(&mut window, &pipe);
+    assert!(window.state().state.errors()[0].contains("is no regular file"));
+    menu(&mut window, "File", "Export figure as SVG...");
+    enter_path(&mut window, &pipe);
+    click_role(&mut window, Role::Button, "Write");
+    let path = folder.path().join("paint.csv");
+    std::fs::write(&path, z307()).unwrap();
+    open_path(&mut window, &path);
+    assert!(window.state().state.errors()[1].contains("is no regular file"));
+    assert_eq!(names(&window), ["z307_on_aluminium", "paint"]);
+}
+
+#[test]
+fn theory_without_readings_is_written_where_it_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("theory.csv");
+    let mut window = empty();
+    open_built_in(&mut window, "Table 1, 001 at 0.91 um");
+    write(&mut window, "Export theory and readings as CSV...", &path);
+    let state = &window.state().state;
+    let sample = state.active_sample().unwrap();
+    let brdf = sample.scan().knobs.brdf().unwrap();
+    let mut reader = csv::Reader::from_path(&path).unwrap();
+    let mut rows = 0;
+    for row in reader.records().map(Result::unwrap) {
+        let value = |i: usize| row[i].parse::<f64>().unwrap();
+        let (psi, theta) = (value(2).to_radians(), value(3).to_radians());
+        let expected = brdf.value(&brdf_core::Geometry::in_plane(psi, theta).unwrap());
+        assert!((value(7) - expected).abs() < 1e-9 * expected, "{row:?}");
+        assert!(row[5].is_empty() && row[4] == *"0");
+        rows += 1;
+    }
+    let drawn = state.shown.curves(sample.scan_id());
+    let drawn: usize = drawn.iter().map(|curve| curve.theory.len()).sum();
+    assert_eq!(rows, drawn);
+}
+
+#[test]
+fn a_figure_without_any_incidence_is_no_figure() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("figure.svg");
+    let mut window = with_z307();
+    click(&mut window, "none incidences");
+    let error = refused(&mut window, "Export figure as SVG...", &path);
+    assert!(error.contains("no incidence is chosen"), "{error}");
+    assert!(!path.exists());
+}
+
+#[test]
+fn a_figure_of_several_samples_says_which_is_which() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("figure.svg");
+    let mut window = with_z307();
+    open_built_in(&mut window, "z307_on_aluminium_cycled.csv");
+    open_built_in(&mut window, "black_anodise_on_aluminium.csv");
+    write(&mut window, "Export figure as SVG...", &path);
+    let svg = std::fs::read_to_string(&path).unwrap();
+    assert!(!svg.contains("curves are named"));
+    for sample in &window.state().state.samples {
+        let scan = sample.scan();
+        let (name, wavelength) = (&sample.name, scan.wavelength_um().unwrap());
+        let words = format!(
+            "{name}, {wavelength} um: three: k2 = {:.4}, kD = {:.4}, k1 = {:.4}, n = {:.4}",
+            scan.knobs.at.k2, scan.knobs.at.kd, scan.knobs.at.k1, scan.knobs.at.n
+        );
+        assert!(svg.contains(&words), "{words}");
+    }
+}
+
+#[test]
+fn samples_of_the_same_name_and_long_names_are_told_apart() {
+    let mut window = empty();
+    let long = "a_paint_with_a_long_name_on_a_plate_of_aluminium";
+    for name in [format!("{long}_1.csv"), format!("{long}_2.csv")] {
+        drop_file(&mut window, &name, &z307());
+    }
+    drop_file(&mut window, "a.csv", &z307());
+    drop_file(&mut window, "a.csv", &z307());
+    assert_eq!(names(&window)[2..], ["a", "a (2)"]);
+    let painted = crate::common::painted_texts(&window);
+    let elided = painted
+        .iter()
+        .filter(|(text, _)| text.starts_with("a_paint"));
+    let elided: Vec<&String> = elided.map(|(text, _)| text).collect();
+    assert_eq!(elided.len(), 2, "{elided:?}");
+    assert!(elided.iter().all(|text| text.contains('…')), "{elided:?}");
+    assert_ne!(elided[0], elided[1]);
 }

@@ -3,13 +3,15 @@
 use std::time::{Duration, Instant};
 
 use crate::common::{
-    Window, click, click_role, drop_file, empty, open_built_in, settle, shows, type_number,
-    with_z307, z307,
+    Window, click, click_role, drop_file, empty, open_built_in, painted_lines, settle, shows,
+    type_number, with_z307, z307,
 };
+use brdf_fit::plot::Ground;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::watch::Phase;
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex};
-use brdf_viewer::state::fitting::{Progress, ReadingWeights, Start};
+use brdf_viewer::intent::{Command, Export, Intent};
+use brdf_viewer::state::fitting::{Progress, ReadingWeights, Scope, Stages, Start};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
@@ -49,13 +51,20 @@ fn both_stages_give_the_numbers_of_the_library() {
     check_same(&window, &expected(|_| {}));
     assert!(shows(&window, "stage 1: psi <= 60 deg"));
     assert!(window.query_by_label("1 of 1 fitted").is_some());
-    let run = window.state().state.run.clone().unwrap();
+    let steps = window
+        .state()
+        .state
+        .active_sample()
+        .unwrap()
+        .scan()
+        .steps
+        .clone();
     let fit = report(&window).fit.unwrap();
     for (phase, stage) in [
         (Phase::Stage1, fit.stage1.unwrap()),
         (Phase::Stage2, fit.stage2.unwrap()),
     ] {
-        let points: Vec<_> = run.points.iter().filter(|p| p.phase == phase).collect();
+        let points: Vec<_> = steps.iter().filter(|p| p.phase == phase).collect();
         assert_eq!(points.last().unwrap().iteration, stage.iterations);
         assert_eq!(points.len() as u64, stage.iterations + 1);
     }
@@ -182,23 +191,25 @@ fn a_long_fit_is_followed_and_cancelled() {
     entries.last().unwrap().click();
     settle(&mut window);
     let before = window.state().state.active_sample().unwrap().scan().knobs;
+    click(&mut window, "E against iteration");
     window.get_by_label("Both stages").click();
     let started = Instant::now();
-    let mut lengths = Vec::new();
     let mut longest_frame = Duration::ZERO;
-    while lengths.last().is_none_or(|points| *points < 3) {
+    // The curve of the stage is painted while it grows.
+    let first = brdf_viewer::theme::plain(0, Ground::Light);
+    let mut lengths = vec![0];
+    while lengths.len() < 4 {
         assert!(started.elapsed() < Duration::from_mins(1));
         let frame = Instant::now();
         window.step();
         longest_frame = longest_frame.max(frame.elapsed());
-        lengths.push(
-            window
-                .state()
-                .state
-                .run
-                .as_ref()
-                .map_or(0, |run| run.points.len()),
-        );
+        let below = window.get_by_label("Tables").rect().bottom();
+        let lines = painted_lines(&window, first).into_iter();
+        let lines = lines.filter(|line| line.iter().all(|at| at.y > below));
+        let points = lines.map(|line| line.len()).max().unwrap_or(0);
+        assert!(points >= lengths[lengths.len() - 1]);
+        lengths.push(points);
+        lengths.dedup();
         std::thread::sleep(Duration::from_millis(1));
     }
     assert!(window.query_by_role(Role::ProgressIndicator).is_some());
@@ -232,11 +243,175 @@ fn all_samples_are_fitted_together() {
     click(&mut window, "Fit all");
     let state = &window.state().state;
     let run = state.run.as_ref().unwrap();
-    assert_eq!((run.jobs, run.done), (4, 4));
+    assert_eq!((run.jobs(), run.done()), (4, 4));
     let measured = state.samples.iter().filter(|s| s.scan().readings() > 0);
     assert!(
         measured
             .flat_map(|s| &s.scans)
             .all(|scan| scan.fitted.is_some())
     );
+}
+
+/// The large scan, with another sample beside it, while all are fitted.
+fn fitting_all() -> Window {
+    let mut window = empty();
+    drop_file(&mut window, "large.csv", &large());
+    open_built_in(&mut window, "z307_on_aluminium.csv");
+    window.get_by_label("Fit all").click();
+    let started = Instant::now();
+    let begun = |window: &Window| {
+        let run = window.state().state.run.as_ref();
+        run.is_some_and(|run| !run.points.is_empty())
+    };
+    while !begun(&window) {
+        assert!(started.elapsed() < Duration::from_mins(1));
+        window.step();
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    window
+}
+
+#[test]
+fn closing_a_sample_ends_its_fit_and_no_other() {
+    let mut window = fitting_all();
+    assert!(window.state().state.is_fitting());
+    window.get_by_label("close large").click();
+    settle(&mut window);
+    let state = &window.state().state;
+    assert_eq!(state.samples.len(), 1);
+    assert!(state.samples[0].scans.iter().all(|s| s.fitted.is_some()));
+    let run = state.run.as_ref().unwrap();
+    let counts = (run.progress, run.jobs(), run.done());
+    assert_eq!(counts, (Progress::Done, 2, 2));
+    assert!(window.query_by_label("2 of 2 fitted").is_some());
+}
+
+#[test]
+fn closing_all_samples_leaves_no_fit() {
+    let mut window = fitting_all();
+    let wish = Intent::Do(Command::CloseAll);
+    window.state_mut().state.apply(wish);
+    settle(&mut window);
+    assert!(window.state().state.run.is_none());
+    assert!(window.query_by_label_contains("fitted").is_none());
+}
+
+#[test]
+fn escape_closes_a_menu_and_only_then_cancels_the_fit() {
+    let mut window = fitting_all();
+    for (role, label) in [(Role::ComboBox, "model"), (Role::Button, "Edit")] {
+        window.get_by_role_and_label(role, label).click();
+        window.step();
+        window.step();
+        window.key_press(egui::Key::Escape);
+        window.step();
+        let run = window.state().state.run.as_ref().unwrap();
+        assert_eq!(run.progress, Progress::Running, "{label}");
+        window.step();
+    }
+    window.key_press(egui::Key::Escape);
+    window.step();
+    let run = window.state().state.run.as_ref().unwrap();
+    assert_ne!(run.progress, Progress::Running);
+    settle(&mut window);
+    let run = window.state().state.run.as_ref().unwrap();
+    assert_eq!(run.progress, Progress::Cancelled);
+}
+
+#[test]
+fn convergence_is_that_of_the_scan_that_is_shown() {
+    let mut window = with_z307();
+    click(&mut window, "Both stages");
+    open_built_in(&mut window, "titanium_anodise.csv");
+    click(&mut window, "E against iteration");
+    let plot = "plot of E against iteration";
+    assert!(window.query_by_label(plot).is_none());
+    assert!(shows(&window, "No stage of this wavelength"));
+    click(&mut window, "z307_on_aluminium");
+    assert!(window.query_by_label(plot).is_some());
+    click(&mut window, "close z307_on_aluminium");
+    assert!(window.query_by_label(plot).is_none());
+}
+
+#[test]
+fn weights_by_sigma_are_those_of_the_library() {
+    use std::fmt::Write as _;
+    let mut text = "psi_deg,theta_deg,brdf_per_sr,sigma_per_sr\n".to_owned();
+    for row in 0..90 {
+        let (psi, theta) = (15 * (row % 5), 7 * (row / 5) - 60);
+        let away = f64::from(theta + psi).to_radians();
+        let brdf = 0.05 + 0.4 * (-6.0 * away * away).exp();
+        let sigma = brdf * if row % 2 == 0 { 0.01 } else { 0.1 };
+        let brdf = brdf * (1.0 + 0.05 * f64::from(row).sin());
+        let _ = writeln!(text, "{psi},{theta},{brdf},{sigma}");
+    }
+    let mut window = empty();
+    drop_file(&mut window, "sigma.csv", &text);
+    click(&mut window, "Settings of the fit");
+    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    click(&mut window, "1/sigma²");
+    click(&mut window, "Both stages");
+    let scan = Measurements::from_reader(text.as_bytes()).unwrap();
+    let mut options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(1.5)),
+        ..FitOptions::default()
+    };
+    let plain = Report::of(&scan, &options, Depth::Fit).0.fit.unwrap();
+    options.weights.by_sigma = true;
+    check_same(&window, &Report::of(&scan, &options, Depth::Assessed).0);
+    let e = report(&window).fit.unwrap().e_percent;
+    assert_ne!(e, plain.e_percent);
+    // And E of the sliders is with the same weights.
+    let words = format!("E = {} %", brdf_fit::words::digits(e));
+    assert!(window.query_by_label(&words).is_some(), "{words}");
+}
+
+#[test]
+fn a_failed_fit_is_told_beside_the_tables_of_the_one_before() {
+    let mut window = with_z307();
+    click(&mut window, "Both stages");
+    click(&mut window, "Settings of the fit");
+    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    click(&mut window, "1/sigma²");
+    click(&mut window, "Both stages");
+    assert!(shows(&window, "The last fit failed"));
+    assert!(shows(&window, "These tables are of the fit before it."));
+    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    click(&mut window, "none");
+    click(&mut window, "Both stages");
+    assert!(!shows(&window, "The last fit failed"));
+}
+
+#[test]
+fn a_fit_of_another_wavelength_can_be_saved() {
+    let mut window = with_z307();
+    let save = Command::Export(Export::Fit);
+    assert!(!window.state().state.is_enabled(save));
+    click(&mut window, "Both stages");
+    let id = window.state().state.active.unwrap();
+    window.state_mut().state.apply(Intent::Wavelength(id, 1));
+    settle(&mut window);
+    assert!(window.state().state.is_enabled(save));
+}
+
+#[test]
+fn a_model_for_all_scans_is_fitted_to_all_of_them() {
+    let mut window = with_z307();
+    open_built_in(&mut window, "titanium_anodise.csv");
+    let wish = |window: &mut Window, intent| {
+        window.state_mut().state.apply(intent);
+        settle(window);
+    };
+    let model = brdf_fit::model::Model::PowerN;
+    wish(&mut window, Intent::Model(model, Scope::All));
+    wish(&mut window, Intent::Fit(Stages::Both, Scope::All));
+    let mut scans = 0;
+    for sample in &window.state().state.samples {
+        for scan in &sample.scans {
+            let fit = scan.fitted.as_ref().unwrap().fit.as_ref().unwrap();
+            assert_eq!(fit.model(), model);
+            scans += 1;
+        }
+    }
+    assert!(scans > 2);
 }

@@ -1,6 +1,7 @@
 //! Pictures of the window, drawn by the processor: the same pixels on every machine.
 //!
-//! `UPDATE_SNAPSHOTS=1 cargo test -p brdf-viewer --test snapshots` draws them anew; look at each.
+//! `UPDATE_SNAPSHOTS=1 cargo test -p brdf-viewer --test window snapshots` draws them anew; look at
+//! each.
 
 use crate::common::{NoDialogs, Window, drop_file, settle, window_with};
 use brdf_viewer::intent::{Command, Intent};

@@ -1,7 +1,8 @@
 //! What is turned by hand: sliders, numbers, the model, holding, undo and redo.
 
 use crate::common::{
-    Window, click, click_role, colour_of, menu, painted_curve, settle, type_number, with_z307,
+    Window, click, click_role, colour_of, menu, open_built_in, painted_curve, settle, type_number,
+    with_z307,
 };
 use brdf_core::Geometry;
 use brdf_fit::model::{Model, Parameter};
@@ -212,4 +213,53 @@ fn parameters_are_those_of_the_wavelength() {
     // Undoing shows what is undone.
     menu(&mut window, "Edit", "Undo");
     assert_eq!(window.state().state.active_sample().unwrap().current, 0);
+}
+
+#[test]
+fn a_model_is_chosen_for_all_wavelengths_and_taken_back_as_one() {
+    let mut window = with_z307();
+    let models = |window: &Window| {
+        let scans = window.state().state.active_sample().unwrap().scans.iter();
+        scans.map(|scan| scan.knobs.model).collect::<Vec<_>>()
+    };
+    click_role(&mut window, Role::ComboBox, "model");
+    let name = format!("{}: {}", Model::PowerN, Model::PowerN.description());
+    window.get_all_by_label(&name).last().unwrap().click();
+    settle(&mut window);
+    assert_eq!(models(&window), [Model::PowerN, Model::Three]);
+    click(&mut window, "This model for all wavelengths");
+    assert_eq!(models(&window), [Model::PowerN; 2]);
+    menu(&mut window, "Edit", "Undo");
+    assert_eq!(models(&window), [Model::PowerN, Model::Three]);
+    menu(&mut window, "Edit", "Redo");
+    assert_eq!(models(&window), [Model::PowerN; 2]);
+}
+
+#[test]
+fn resetting_leaves_what_is_held() {
+    let mut window = with_z307();
+    // Without a fit, and with one.
+    for _ in 0..2 {
+        type_number(&mut window, "k1", "0.9");
+        click(&mut window, "hold k1");
+        click(&mut window, "Reset all");
+        assert!(knobs(&window).holds(Parameter::K1));
+        assert_ne!(knobs(&window).at.k1, 0.9);
+        click(&mut window, "hold k1");
+        click(&mut window, "Both stages");
+    }
+}
+
+#[test]
+fn what_is_taken_back_is_shown() {
+    let mut window = with_z307();
+    type_number(&mut window, "k1", "0.7");
+    open_built_in(&mut window, "titanium_anodise.csv");
+    click(&mut window, "show z307_on_aluminium");
+    assert!(!window.state().state.samples[0].visible);
+    menu(&mut window, "Edit", "Undo");
+    let state = &window.state().state;
+    assert!(state.samples[0].visible);
+    assert_eq!(state.active, Some(state.samples[0].id));
+    assert_ne!(knobs(&window).at.k1, 0.7);
 }

@@ -5,7 +5,10 @@ use brdf_fit::plot::Scale;
 use egui_plot::{GridInput, GridMark};
 
 /// The height of a number, in the smallest steps of a grid.
-const A_NUMBER: f64 = 2.6;
+const HEIGHT: f64 = 2.6;
+
+/// The width of a number, in these steps.
+const WIDTH: f64 = 6.0;
 
 /// How a value is placed on an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,10 +47,19 @@ impl Axis {
         }
     }
 
-    /// The lines of its grid.
+    /// The lines of its grid, where its numbers stand above each other.
     pub fn grid(self, input: &GridInput) -> Vec<GridMark> {
+        self.grid_with(input, HEIGHT)
+    }
+
+    /// The lines of its grid, where its numbers stand beside each other.
+    pub fn grid_along(self, input: &GridInput) -> Vec<GridMark> {
+        self.grid_with(input, WIDTH)
+    }
+
+    fn grid_with(self, input: &GridInput, number: f64) -> Vec<GridMark> {
         match self {
-            Self::Linear => linear(input),
+            Self::Linear => linear(input, number),
             Self::Logarithmic => logarithmic(input),
         }
     }
@@ -70,9 +82,9 @@ impl Axis {
 }
 
 /// Lines at round values with room for a number at each, and finer ones between them.
-fn linear(input: &GridInput) -> Vec<GridMark> {
+fn linear(input: &GridInput, number: f64) -> Vec<GridMark> {
     let (low, high) = input.bounds;
-    let numbered = round_number_above(A_NUMBER * input.base_step_size);
+    let numbered = round_number_above(number * input.base_step_size);
     let leading = numbered / 10_f64.powf(numbered.log10().floor());
     let parts = if (1.5..4.0).contains(&leading) {
         4.0
@@ -139,7 +151,7 @@ pub fn round_number_above(least: f64) -> f64 {
 }
 
 /// A number with the decimals of its step.
-fn number(value: f64, step: f64) -> String {
+pub fn number(value: f64, step: f64) -> String {
     let decimals = -step.log10().floor();
     // The rounding of a multiple of the step is no number of its own.
     let value = if value.abs() < 1e-9 * step {
@@ -172,7 +184,7 @@ fn in_powers(value: f64) -> String {
 pub fn degrees(input: &GridInput) -> Vec<GridMark> {
     let width = input.bounds.1 - input.bounds.0;
     if width < 40.0 {
-        return linear(input);
+        return linear(input, WIDTH);
     }
     let mut marks = marks_every(input.bounds.0, input.bounds.1, 5.0);
     for mark in &mut marks {

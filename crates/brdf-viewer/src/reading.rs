@@ -1,0 +1,130 @@
+//! Opening files: scans, and fits as JSON with the scans that they are of.
+
+use std::path::{Path, PathBuf};
+
+use brdf_fit::Measurements;
+use brdf_fit::read::Convention;
+use brdf_fit::report::Document;
+
+use crate::job::Opened;
+use crate::state::built_in;
+use crate::state::sample::Scan;
+
+/// What is in a file: a scan, or a sample for each of the scans that a document of fits is of.
+///
+/// Errors: what is wrong with it, in words.
+pub fn read(path: &Path, convention: Convention) -> Result<Vec<Opened>, String> {
+    // A pipe would be waited for without end, with everything that is opened after it.
+    if path.exists() && !path.is_file() {
+        return Err(format!(
+            "{}: is no regular file: expected a scan, or a fit as JSON",
+            path.display()
+        ));
+    }
+    if is_fit(path) {
+        return read_fit(path);
+    }
+    Ok(vec![Opened {
+        source: path.display().to_string(),
+        file: Some(path.to_owned()),
+        scans: read_scan(path, convention)?,
+    }])
+}
+
+/// What is in a file that is already here.
+///
+/// Errors: what is wrong with it, in words.
+pub fn read_bytes(name: &str, bytes: &[u8], convention: Convention) -> Result<Opened, String> {
+    Ok(Opened {
+        source: name.to_owned(),
+        file: None,
+        scans: read_text(name, bytes, convention)?,
+    })
+}
+
+fn is_fit(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("json"))
+}
+
+fn read_scan(path: &Path, convention: Convention) -> Result<Vec<Scan>, String> {
+    Measurements::read_csv_with(path, convention)
+        .map(scans)
+        .map_err(|error| error.to_string())
+}
+
+fn read_text(name: &str, bytes: &[u8], convention: Convention) -> Result<Vec<Scan>, String> {
+    Measurements::from_reader_with(bytes, name, convention)
+        .map(scans)
+        .map_err(|error| error.to_string())
+}
+
+fn scans(measurements: Measurements) -> Vec<Scan> {
+    let all = measurements.by_wavelength().into_iter();
+    all.map(Scan::new).collect()
+}
+
+/// The scans that a document of fits is of, with these fits.
+fn read_fit(path: &Path) -> Result<Vec<Opened>, String> {
+    let document = Document::read(path).map_err(|error| error.to_string())?;
+    let mut files: Vec<(&str, Convention)> = Vec::new();
+    for report in &document.reports {
+        let file = (report.file.as_str(), report.convention);
+        if !files.contains(&file) {
+            files.push(file);
+        }
+    }
+    let of_file = |(file, convention)| {
+        let (place, mut scans) = read_scan_of(path, file, convention)?;
+        for scan in &mut scans {
+            take_fit(scan, &document, file);
+        }
+        Ok(Opened {
+            source: path.display().to_string(),
+            file: place,
+            scans,
+        })
+    };
+    files.into_iter().map(of_file).collect()
+}
+
+/// The fit of a scan of a file, where the document has it.
+fn take_fit(scan: &mut Scan, document: &Document, file: &str) {
+    let wavelength = scan.wavelength_um();
+    let mut reports = document.reports.iter();
+    let found = reports.find(|report| report.file == file && report.wavelength_um == wavelength);
+    if let Some(report) = found {
+        scan.take(report.clone());
+        scan.settled = scan.knobs;
+    }
+}
+
+/// The scan that a fit names, and its file: as it is named, beside the fit, or among the built-in
+/// ones.
+fn read_scan_of(
+    fit: &Path,
+    file: &str,
+    convention: Convention,
+) -> Result<(Option<PathBuf>, Vec<Scan>), String> {
+    let beside = fit.parent().map(|folder| folder.join(file));
+    let same_folder = fit
+        .parent()
+        .and_then(|folder| Some(folder.join(Path::new(file).file_name()?)));
+    for path in [Some(PathBuf::from(file)), beside, same_folder]
+        .into_iter()
+        .flatten()
+    {
+        if path.is_file() {
+            let scans = read_scan(&path, convention)?;
+            return Ok((Some(path), scans));
+        }
+    }
+    match built_in::text_of(file) {
+        Some(text) => Ok((None, read_text(file, text.as_bytes(), convention)?)),
+        None => Err(format!(
+            "{}: is a fit of {file}, which cannot be found: expected the scan where the fit names \
+             it, or beside the fit",
+            fit.display()
+        )),
+    }
+}

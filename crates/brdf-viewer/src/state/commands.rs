@@ -1,0 +1,120 @@
+//! The commands: what each does, when it can be done, and whether what it switches is on.
+
+use brdf_fit::plot::{Layout, Quantity, Scale};
+
+use super::fitting::{Scope, Stages};
+use super::interface::Dialog;
+use super::sample::{Sample, SampleId};
+use super::{Effect, State};
+use crate::intent::{Command, Export};
+
+impl State {
+    pub(super) fn command(&mut self, command: Command) {
+        if !self.is_enabled(command) {
+            return;
+        }
+        match command {
+            Command::Open => self.effects.push(Effect::AskOpen),
+            Command::OpenPath => self.ask_path(),
+            Command::Close => {
+                if let Some(id) = self.active {
+                    self.close(id);
+                }
+            }
+            Command::CloseAll => {
+                let all: Vec<SampleId> = self.samples.iter().map(|sample| sample.id).collect();
+                for id in all {
+                    self.close(id);
+                }
+            }
+            Command::Export(what) => {
+                let path = self.suggested(what);
+                self.effects.push(Effect::AskExport(what, path));
+            }
+            Command::CopyParameters => self.copy_parameters(),
+            Command::Quit => self.effects.push(Effect::Quit),
+            Command::Undo => self.undo(),
+            Command::Redo => self.redo(),
+            Command::ResetAll => self.reset_all(),
+            Command::Fit => self.fit(Stages::Both, Scope::Wavelength),
+            Command::FitAll => self.fit(Stages::Both, Scope::All),
+            Command::Cancel => self.cancel(),
+            Command::About => self.dialog = Some(Dialog::About),
+            view => self.switch(view),
+        }
+    }
+
+    /// Carries out a command that changes how things are looked at.
+    fn switch(&mut self, command: Command) {
+        match command {
+            Command::Logarithmic => {
+                self.view.scale = match self.view.scale {
+                    Scale::Linear => Scale::Logarithmic,
+                    Scale::Logarithmic => Scale::Linear,
+                }
+            }
+            Command::TimesCosine => {
+                self.view.quantity = match self.view.quantity {
+                    Quantity::Brdf => Quantity::BrdfCosine,
+                    Quantity::BrdfCosine => Quantity::Brdf,
+                }
+            }
+            Command::Residuals => self.view.residuals ^= true,
+            Command::Together => self.view.layout = Layout::Together,
+            Command::Panels => self.view.layout = Layout::Panels,
+            Command::Polar => self.view.layout = Layout::Polar,
+            Command::ResetZoom => self.zoom_resets += 1,
+            Command::Samples => self.interface.samples ^= true,
+            Command::Parameters => self.interface.parameters ^= true,
+            Command::Results => self.interface.results ^= true,
+            Command::Dark => self.interface.dark = Some(!self.is_dark()),
+            Command::SystemTheme => self.interface.dark = None,
+            _ => {}
+        }
+    }
+
+    /// Whether a command can be carried out now.
+    pub fn is_enabled(&self, command: Command) -> bool {
+        let active = self.active_sample();
+        let scan = active.map(Sample::scan);
+        match command {
+            Command::Close | Command::CopyParameters | Command::Export(Export::Curves) => {
+                active.is_some()
+            }
+            Command::CloseAll => !self.samples.is_empty(),
+            Command::Export(Export::Figure(_)) => self.visible().next().is_some(),
+            Command::Export(Export::Fit) => active.is_some_and(Sample::is_fitted),
+            Command::Undo => self.history.can_undo(),
+            Command::Redo => self.history.can_redo(),
+            Command::ResetAll => scan.is_some_and(|scan| scan.fitted_knobs() != scan.knobs),
+            Command::Fit => !self.is_fitting() && scan.is_some_and(|scan| scan.readings() > 0),
+            Command::FitAll => !self.is_fitting() && !self.scans_to_fit(Scope::All).is_empty(),
+            Command::Cancel => self.is_fitting(),
+            Command::Residuals => self.view.layout != Layout::Polar,
+            _ => true,
+        }
+    }
+
+    /// Whether a command that switches something is on; `None` where it switches nothing.
+    pub fn is_on(&self, command: Command) -> Option<bool> {
+        Some(match command {
+            Command::Logarithmic => self.view.scale == Scale::Logarithmic,
+            Command::TimesCosine => self.view.quantity == Quantity::BrdfCosine,
+            Command::Residuals => self.view.residuals,
+            Command::Together => self.view.layout == Layout::Together,
+            Command::Panels => self.view.layout == Layout::Panels,
+            Command::Polar => self.view.layout == Layout::Polar,
+            Command::Samples => self.interface.samples,
+            Command::Parameters => self.interface.parameters,
+            Command::Results => self.interface.results,
+            Command::Dark => self.is_dark(),
+            Command::SystemTheme => self.interface.dark.is_none(),
+            _ => return None,
+        })
+    }
+
+    /// Whether the window is dark: as the user chose, or else as the system says.
+    fn is_dark(&self) -> bool {
+        self.interface.dark.unwrap_or(self.system_dark)
+    }
+}

@@ -136,33 +136,65 @@ fn families(c: &mut Criterion) {
     group.finish();
 }
 
+/// From which number of points on several cores pay: the same work as one piece and as many.
+fn break_even(c: &mut Criterion) {
+    let [psi, theta, phi] =
+        angles(1 << 16).map(|a| a.iter().map(|x| x.cos() as f32).collect::<Vec<_>>());
+    let mut out = vec![0.0_f32; 1 << 16];
+    let single = Single::new(brdf(Family::Paper));
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build();
+    let one_thread = one_thread.expect("a pool");
+    let mut group = c.benchmark_group("f32 batch from cosines");
+    for count in [1 << 14, 1 << 15, 1 << 16] {
+        let points = Points::Cosines {
+            psi: &psi[..count],
+            theta: &theta[..count],
+            phi: &phi[..count],
+        };
+        let out = &mut out[..count];
+        group.throughput(Throughput::Elements(count as u64));
+        group.bench_function(format!("{count} points, one thread"), |b| {
+            one_thread.install(|| b.iter(|| single.values_f32(black_box(&points), out)));
+        });
+        group.bench_function(format!("{count} points, all threads"), |b| {
+            b.iter(|| single.values_f32(black_box(&points), out));
+        });
+    }
+    group.finish();
+}
+
 /// Whether `f32` is as fast as the memory: against a triad over the same arrays, three in, one out.
 fn in_memory(c: &mut Criterion) {
     const MANY: usize = 16 << 20;
-    let [psi, theta, phi] =
-        angles(MANY).map(|a| a.iter().map(|x| x.cos() as f32).collect::<Vec<_>>());
-    let mut out = vec![0.0_f32; MANY];
-    let points = Points::Cosines {
-        psi: &psi,
-        theta: &theta,
-        phi: &phi,
-    };
+    // Arrays that begin at the same place of a page get in each other's way: these do not.
+    const APART: usize = 272;
+    let arrays =
+        angles(MANY + 3 * APART).map(|a| a.iter().map(|x| x.cos() as f32).collect::<Vec<_>>());
+    let part = |i: usize| &arrays[i][i * APART..i * APART + MANY];
+    let (psi, theta, phi) = (part(0), part(1), part(2));
+    let mut out = vec![0.0_f32; MANY + 3 * APART];
+    let out = &mut out[3 * APART..];
+    let points = Points::Cosines { psi, theta, phi };
     let single = Single::new(brdf(Family::Paper));
+    let fitted = FittedFresnel::new(brdf(Family::Paper), 0.0, 1e-3).expect("a polynomial");
     let mut group = c.benchmark_group("16 Mi points, all threads");
     group.sample_size(20);
     group.throughput(Throughput::Elements(MANY as u64));
     group.bench_function("triad", |b| {
-        b.iter(|| triad([&psi, &theta, &phi], &mut out));
+        b.iter(|| triad([psi, theta, phi], out));
     });
     group.bench_function("f32 batch from cosines", |b| {
-        b.iter(|| single.values_f32(black_box(&points), &mut out));
+        b.iter(|| single.values_f32(black_box(&points), out));
+    });
+    group.bench_function("f32 batch, fitted Fresnel factor, from cosines", |b| {
+        b.iter(|| fitted.values_f32(black_box(&points), out));
     });
     group.finish();
 }
 
 /// out = a + b c, on all threads.
 fn triad([a, b, c]: [&[f32]; 3], out: &mut [f32]) {
-    const PIECE: usize = 1 << 13;
+    const PIECE: usize = 1 << 20;
     out.par_chunks_mut(PIECE)
         .enumerate()
         .for_each(|(piece, out)| {
@@ -198,5 +230,5 @@ fn grid(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, in_cache, families, in_memory, grid);
+criterion_group!(benches, in_cache, families, break_even, in_memory, grid);
 criterion_main!(benches);

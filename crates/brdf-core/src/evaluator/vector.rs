@@ -22,12 +22,17 @@ use crate::pair::{Pair, Zenith};
 use crate::real::{Fused, Primitive, Real};
 use crate::trigonometry::sin2_cos2_of_any_half;
 
-/// From this number of points on, several cores share the work. Two cores broke even at 8 Ki points
-/// of the fastest formula, 1 ns each (`cargo bench -p brdf-core --bench evaluators`).
-pub const PARALLEL_FROM: usize = 1 << 14;
+/// From this number of points on, several cores share the work: of the fastest formula, 1 ns a point,
+/// two cores took 24 us for 16 Ki points, one 16 us; for 32 Ki points 28 us and 32 us
+/// (`cargo bench -p brdf-core --bench evaluators`).
+pub const PARALLEL_FROM: usize = 1 << 15;
 
-/// Points of one piece of the work.
-const PIECE: usize = 1 << 13;
+/// The least points of one piece of the work.
+const LEAST_PIECE: usize = 1 << 13;
+
+/// Pieces for each thread: enough for one to help another out, and no more, since at the beginning of
+/// a piece the memory is waited for.
+const PIECES_A_THREAD: usize = 8;
 
 /// A formula of a pair of directions.
 ///
@@ -162,12 +167,14 @@ pub(crate) fn native<T: Primitive>(
     work: impl Fn(&Points<T>, &mut [T]) + Sync,
 ) -> Result<(), LengthError> {
     points.check(out.len())?;
-    if out.len() < PARALLEL_FROM || rayon::current_num_threads() == 1 {
+    let threads = rayon::current_num_threads();
+    if out.len() < PARALLEL_FROM || threads == 1 {
         work(points, out);
-    } else {
-        let pieces = out.par_chunks_mut(PIECE).enumerate();
-        pieces.for_each(|(i, out)| work(&points.part(i * PIECE..i * PIECE + out.len()), out));
+        return Ok(());
     }
+    let length = LEAST_PIECE.max(out.len() / (PIECES_A_THREAD * threads));
+    let pieces = out.par_chunks_mut(length).enumerate();
+    pieces.for_each(|(i, out)| work(&points.part(i * length..i * length + out.len()), out));
     Ok(())
 }
 

@@ -11,6 +11,10 @@ use crate::real::Primitive;
 /// For how long an evaluator is timed, if one pass is not longer.
 const WATCHED: Duration = Duration::from_millis(3);
 
+/// Points by which the cost is measured: by one thread, in the caches. No power of two: arrays that lie
+/// a multiple of 4 KiB apart get in each other's way, which doubled the time of `f32`.
+pub const TIMED: usize = 3000;
+
 /// Passes of the shortest of which the time is taken: whatever else the machine does only adds.
 const LEAST_PASSES: u32 = 5;
 

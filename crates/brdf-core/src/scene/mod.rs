@@ -30,7 +30,7 @@ mod probe;
 
 use serde::{Deserialize, Serialize};
 
-pub use cost::{cost, cost_of_single_values};
+pub use cost::{TIMED, cost, cost_of_single_values};
 pub use domain::{Azimuth, Domain, DomainError};
 pub use plan::{Candidate, Plan, PlanError, Refusal, Survey};
 pub(crate) use probe::worst_error;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{Azimuth, Errors, Probe, Scene, cost};
+use super::{Azimuth, Errors, Probe, Scene, TIMED, cost};
 use crate::AnyBrdf;
 use crate::evaluator::{
     Evaluator, Exact, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
@@ -14,9 +14,6 @@ use crate::evaluator::{
 /// Points at which the errors are looked for.
 const PROBED: usize = 1 << 17;
 
-/// Points by which the cost is measured: by one thread, in the caches.
-const TIMED: usize = 1 << 12;
-
 /// An evaluator is taken if the largest error seen is within this part of the tolerance: among more
 /// points, a larger one will be found.
 const PART_OF_TOLERANCE: f64 = 0.7;
@@ -25,7 +22,7 @@ const PART_OF_TOLERANCE: f64 = 0.7;
 const TABLE_PART: f64 = 0.5;
 
 /// Points by which the cost on all cores is measured: too many for the caches.
-const TIMED_ON_ALL: usize = 1 << 20;
+const TIMED_ON_ALL: usize = 1_000_000;
 
 /// What the polynomial of the Fresnel factor may take of the tolerance.
 const FRESNEL_PART: f64 = 0.4;

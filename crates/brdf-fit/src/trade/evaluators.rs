@@ -7,7 +7,7 @@ use std::io;
 use brdf_core::AnyBrdf;
 use brdf_core::evaluator::vector_unit;
 use brdf_core::scene::{
-    Azimuth, Candidate, Coordinates, Probe, Scene, Survey, cost_of_single_values,
+    Azimuth, Candidate, Coordinates, Probe, Scene, Survey, TIMED, cost_of_single_values,
 };
 use serde::Serialize;
 
@@ -18,9 +18,6 @@ use crate::words::{counted, in_degrees};
 
 /// What [`AnyBrdf::value`] is called, point after point.
 pub const SINGLE_VALUES: &str = "value";
-
-/// Points by which single values are timed, in the caches.
-const TIMED: usize = 1 << 12;
 
 /// Ways to evaluate a BRDF, compared for a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -192,7 +189,7 @@ impl EvaluatorTrade {
         }
         text += "  (*: Pareto front, none is faster with no larger error; errors relative, against \
                  single values; times as fast\n  as single values; 1 thread: arrays in the caches, \
-                 all threads: 2^20 points in memory)\n";
+                 all threads: a million points in memory)\n";
         match (self.plan, &self.no_plan) {
             (Some(plan), _) => {
                 let _ = writeln!(text, "  plan: {plan}");

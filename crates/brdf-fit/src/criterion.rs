@@ -25,6 +25,10 @@ pub const MOST_FOLDS: usize = 24;
 /// So many readings are evaluated together: their columns stay in the nearest cache.
 const BLOCK: usize = 32;
 
+/// From so many readings on, incidences are evaluated side by side: for the 112 of a usual scan, the
+/// threads alone took as long as the fit.
+const SIDE_BY_SIDE_FROM: usize = 1 << 13;
+
 /// E as a function of the parameters, for one set of readings and one family of models:
 ///
 /// ```text
@@ -150,17 +154,25 @@ struct Block {
 }
 
 impl Block {
-    /// A block of these rows, without their lobe yet.
-    fn new(measured: &[f64], diffuse: &[f64]) -> Self {
-        let mut block = Self {
-            y: [0.0; BLOCK],
-            a: [0.0; BLOCK],
-            u: [0.0; BLOCK],
-            by: [[0.0; BLOCK]; 3],
-        };
-        block.y[..measured.len()].copy_from_slice(measured);
-        block.a[..diffuse.len()].copy_from_slice(diffuse);
-        block
+    const EMPTY: Self = Self {
+        y: [0.0; BLOCK],
+        a: [0.0; BLOCK],
+        u: [0.0; BLOCK],
+        by: [[0.0; BLOCK]; 3],
+    };
+
+    /// Takes these rows, without their lobe yet, in place of those that were there.
+    #[inline]
+    fn take(&mut self, measured: &[f64], diffuse: &[f64]) {
+        let rows = measured.len();
+        self.y[..rows].copy_from_slice(measured);
+        self.a[..rows].copy_from_slice(diffuse);
+        if rows < BLOCK {
+            let [by_k1, by_n, by_p] = &mut self.by;
+            for column in [&mut self.y, &mut self.a, &mut self.u, by_k1, by_n, by_p] {
+                column[rows..].fill(0.0);
+            }
+        }
     }
 }
 
@@ -327,12 +339,14 @@ impl Criterion {
     }
 
     /// E, as a fraction, and E of each incidence by itself: each reading is looked at once, the
-    /// incidences side by side.
+    /// incidences of many side by side.
     pub fn error_and_by_incidence(&self, at: &ModelParameters) -> (f64, Vec<IncidenceError>) {
-        let segments = self.segments.par_iter();
-        let squares: Vec<(f64, f64)> = segments
-            .map(|segment| self.squares_of(at, segment))
-            .collect();
+        let squares = |segment: &Segment| self.squares_of(at, segment);
+        let squares: Vec<(f64, f64)> = if self.len() < SIDE_BY_SIDE_FROM {
+            self.segments.iter().map(squares).collect()
+        } else {
+            self.segments.par_iter().map(squares).collect()
+        };
         let error = squares.iter().map(|(above, _)| above).sum();
         let of = |(segment, (above, below)): (&Segment, (f64, f64))| {
             IncidenceError::new(segment, (below > 0.0).then(|| 100.0 * above / below))
@@ -545,10 +559,11 @@ impl Criterion {
     ) {
         let dielectric = Dielectric::new(n);
         let mut start = rows.start;
+        let mut block = Block::EMPTY;
+        let mut fresnel = [0.0; BLOCK];
         while start < rows.end {
             let range = start..(start + BLOCK).min(rows.end);
-            let mut block = Block::new(&self.measured[range.clone()], &self.diffuse[range.clone()]);
-            let mut fresnel = [0.0; BLOCK];
+            block.take(&self.measured[range.clone()], &self.diffuse[range.clone()]);
             self.fill_fresnel(&dielectric, range.clone(), &mut fresnel);
             for (j, i) in range.clone().enumerate() {
                 block.u[j] = self.shape(facet, shadowing, i) * fresnel[j];

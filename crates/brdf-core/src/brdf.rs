@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Geometry;
 use crate::facet::{Ellipsoid, FacetDistribution, P_DOMAIN};
-use crate::fresnel::{Dielectric, FresnelFactor};
+use crate::fresnel::Dielectric;
 use crate::pair::HalfVector;
 use crate::quotient::Quotient;
 use crate::real::Real;
@@ -170,9 +170,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
-        let fresnel = self
-            .fresnel
-            .quotient(geometry.cos_gamma, geometry.cos2_gamma);
+        let fresnel = self.fresnel.quotient_at(geometry);
         self.with_fresnel(fresnel, psi, theta, &geometry.half())
     }
 
@@ -196,7 +194,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
         let (t, sec) = (geometry.tan2_alpha, geometry.sec_alpha);
-        let fresnel = self.relative_fresnel(geometry) * FRAC_1_PI;
+        let fresnel = self.fresnel.quotient_at(geometry).value() * FRAC_1_PI;
         let shadowing = self.shadowing.over_cosines_at(geometry);
         let facet = self.facet.relative(t, sec);
         let mut by_k1 = self.facet.derivative_k1(t, sec) * (shadowing * fresnel);
@@ -228,7 +226,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self
                 .facet
                 .derivative_p(geometry.tan2_alpha, geometry.sec_alpha)
-            * self.relative_fresnel(geometry)
+            * self.fresnel.quotient_at(geometry).value()
             * self.shadowing.over_cosines_at(geometry)
     }
 
@@ -242,12 +240,6 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     pub(crate) fn unshadowed(&self, tan2_alpha: f64, cos_gamma: f64) -> f64 {
         let facet = self.facet.relative(tan2_alpha, (1.0 + tan2_alpha).sqrt());
         self.k2 * FRAC_1_PI * facet * self.fresnel.relative(cos_gamma)
-    }
-
-    #[inline]
-    fn relative_fresnel(&self, geometry: &Geometry) -> f64 {
-        let (c, c2) = (geometry.cos_gamma, geometry.cos2_gamma);
-        self.fresnel.quotient(c, c2).value()
     }
 
     pub(crate) fn facet(&self) -> F {
@@ -271,8 +263,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
 /// R0(gamma) G / (cos psi cos theta).
 #[inline]
 pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
-    let factor = fresnel.quotient(geometry.cos_gamma, geometry.cos2_gamma);
-    factor.value() * VGroove.over_cosines_at(geometry)
+    fresnel.quotient_at(geometry).value() * VGroove.over_cosines_at(geometry)
 }
 
 #[cfg(test)]

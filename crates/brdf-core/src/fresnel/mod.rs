@@ -4,6 +4,7 @@ mod polynomial;
 
 pub use polynomial::FresnelPolynomial;
 
+use crate::Geometry;
 use crate::quotient::Quotient;
 use crate::real::Real;
 
@@ -61,6 +62,13 @@ impl Dielectric {
     /// R0(gamma) = R(gamma)/R(0), for cos gamma in (0, 1].
     pub fn relative(&self, cos_gamma: f64) -> f64 {
         self.quotient(cos_gamma, cos_gamma * cos_gamma).value()
+    }
+
+    /// R0(gamma) of a geometry, which has the square beside the cosine: the roots of both then run
+    /// side by side.
+    #[inline]
+    pub fn quotient_at(&self, geometry: &Geometry) -> Quotient<f64> {
+        self.quotient(geometry.cos_gamma, geometry.cos2_gamma)
     }
 
     /// The derivative of R0(gamma) by n, for cos gamma in (0, 1] and sin^2 gamma with it.

@@ -108,13 +108,9 @@ impl Domain {
         self.azimuth
     }
 
-    /// A bound of the tilt alpha: half of the largest angle between source and the mirrored view.
-    pub(crate) fn largest_tilt(&self) -> f64 {
-        0.5 * (self.incidence.1 + self.view.1)
-    }
-
-    /// A bound of the facet's incidence gamma: half of the largest angle between source and view.
-    pub(crate) fn largest_facet_incidence(&self) -> f64 {
+    /// A bound of the facet's tilt alpha, and of the incidence gamma on it: half of the largest
+    /// angle between the source and the view, or its mirror image.
+    pub(crate) fn largest_facet_angle(&self) -> f64 {
         0.5 * (self.incidence.1 + self.view.1)
     }
 }

@@ -182,7 +182,7 @@ impl<'a> Trial<'a> {
 
     fn formulas(&mut self) {
         let brdf = *self.brdf;
-        let least_cos_gamma = self.scene.domain.largest_facet_incidence().cos();
+        let least_cos_gamma = self.scene.domain.largest_facet_angle().cos();
         let tolerance = FRESNEL_PART * self.scene.tolerance;
         self.offer("lambertian", || Ok(Lambertian::new(brdf.parameters().kd)));
         self.offer("specular-only", || Ok(SpecularOnly::new(&brdf)));

@@ -49,8 +49,9 @@ impl IsotropicTable {
     ) -> Result<Self, TableError> {
         let width = brdf.parameters().k1.min(1.0);
         let at_tilt = |tan2_alpha: f64| (tan2_alpha / (width * width)).ln_1p();
-        let largest_tilt = domain.largest_tilt().tan().powi(2);
-        let least_cosine = domain.largest_facet_incidence().cos();
+        let largest_angle = domain.largest_facet_angle();
+        let largest_tilt = largest_angle.tan().powi(2);
+        let least_cosine = largest_angle.cos();
         Lattice::grown(&Wanted {
             ranges: [(0.0, at_tilt(largest_tilt)), (least_cosine, 1.0)],
             function: |[tilt, cos_gamma]: [f64; 2]| {

@@ -31,6 +31,7 @@
 pub mod assessment;
 pub mod criterion;
 pub mod energy;
+pub mod export;
 pub mod initial;
 pub mod measurement;
 pub mod model;

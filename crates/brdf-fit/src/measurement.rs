@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use brdf_core::{Geometry, GeometryError};
 use serde::{Deserialize, Serialize};
 
-use crate::read::Convention;
+use crate::read::{Convention, Format};
 use crate::refractive_index::RefractiveIndex;
 
 /// One reading. Angles in radians in the model's convention: a positive theta at phi = 0 is the
@@ -143,6 +143,11 @@ pub struct Measurements {
     pub ignored_columns: Vec<String>,
     /// The angular convention of the file; the readings here are in the model's.
     pub convention: Convention,
+    /// The format of the file.
+    pub format: Format,
+    /// What was converted on the way from the file to the readings, and what was left out and how
+    /// many of it, one sentence each.
+    pub conversions: Vec<String>,
     pub(crate) readings: Vec<Measurement>,
 }
 
@@ -282,6 +287,8 @@ impl Measurements {
             refractive_index: self.refractive_index.clone(),
             ignored_columns: self.ignored_columns.clone(),
             convention: self.convention,
+            format: self.format,
+            conversions: self.conversions.clone(),
             readings: Vec::new(),
         }
     }

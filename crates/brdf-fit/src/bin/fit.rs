@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use brdf_fit::energy::USUAL_LIMIT_DEG;
 use brdf_fit::model::{Held, Model};
 use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file, write_json};
-use brdf_fit::read::{Convention, ReadError, Side};
+use brdf_fit::read::{Format, ReadError, ReadOptions, Side};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
     write_models, write_parameters,
@@ -112,6 +112,10 @@ struct Arguments {
     /// [default: 1]
     #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
     g2: Option<AngleWeight>,
+
+    /// Format of the files, instead of what their content and their extension say: csv
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
 
     /// The side of the surface normal on which the files count theta positive, source or forward
     /// [default: source; with --again as it was]
@@ -285,11 +289,12 @@ impl Arguments {
     }
 
     /// How the files are read: as the options say, else as those of the document were.
-    fn convention(&self, document: Option<&Document>) -> Convention {
-        let before = document.map_or_else(Convention::default, |d| d.reports[0].convention);
-        Convention {
-            theta_positive: self.theta_positive.unwrap_or(before.theta_positive),
-            phi_zero: self.phi_zero.unwrap_or(before.phi_zero),
+    fn read_options(&self, document: Option<&Document>) -> ReadOptions {
+        let before = document.map(|document| document.reports[0].convention);
+        ReadOptions {
+            format: self.format,
+            theta_positive: self.theta_positive.or(before.map(|b| b.theta_positive)),
+            phi_zero: self.phi_zero.or(before.map(|b| b.phi_zero)),
         }
     }
 }
@@ -325,7 +330,7 @@ fn main() -> ExitCode {
             return Outcome::BadUsageOrFile.into();
         }
     };
-    let (scans, read) = read_all(&arguments, arguments.convention(document.as_ref()));
+    let (scans, read) = read_all(&arguments, &arguments.read_options(document.as_ref()));
     let (jobs, planned) = plan(&scans, &arguments, document.as_ref());
     let mut outcome = read.max(planned);
     let results = fit_all(&jobs, &arguments);
@@ -356,11 +361,11 @@ fn main() -> ExitCode {
 }
 
 /// Reads every file, and complains about those that cannot be read.
-fn read_all(arguments: &Arguments, convention: Convention) -> (Vec<Measurements>, Outcome) {
+fn read_all(arguments: &Arguments, options: &ReadOptions) -> (Vec<Measurements>, Outcome) {
     let files: Vec<Result<Measurements, ReadError>> = arguments
         .files
         .par_iter()
-        .map(|file| Measurements::read_csv_with(file, convention))
+        .map(|file| Measurements::read(file, options))
         .collect();
     let mut outcome = Outcome::AllFitted;
     let mut scans = Vec::new();

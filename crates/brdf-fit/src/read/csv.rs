@@ -349,6 +349,7 @@ impl<'a> Input<'a> {
             ignored_columns: columns.ignored,
             convention,
             readings,
+            ..Measurements::default()
         })
     }
 

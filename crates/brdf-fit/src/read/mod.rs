@@ -4,10 +4,74 @@ pub mod csv;
 mod fields;
 
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+
+use crate::measurement::Measurements;
+
+/// A format of files with measured values.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Format {
+    /// The project's own table: [`csv`].
+    #[default]
+    Csv,
+}
+
+impl Format {
+    /// All formats, with the names that options and files give them.
+    pub const NAMED: [(Self, &str); 1] = [(Self::Csv, "csv")];
+
+    /// The name that options and files give it.
+    pub fn name(self) -> &'static str {
+        let found = Self::NAMED.iter().find(|(format, _)| *format == self);
+        found.map_or("", |(_, name)| name)
+    }
+}
+
+impl FromStr for Format {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::NAMED.iter().find(|(_, name)| *name == text);
+        found.map(|(format, _)| *format).ok_or_else(|| {
+            let names = Self::NAMED.map(|(_, name)| name).join(", ");
+            format!("\"{text}\" is not a format: expected one of {names}")
+        })
+    }
+}
+
+/// How a file is read.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// The format; found by the content, then by the extension, where it is not given.
+    pub format: Option<Format>,
+    /// The side on which the file counts theta positive; as its format has it where it is not given.
+    pub theta_positive: Option<Side>,
+    /// The side on which the file's azimuth is zero; as its format has it where it is not given.
+    pub phi_zero: Option<Side>,
+}
+
+impl ReadOptions {
+    /// The convention of a file whose format has one of its own.
+    pub fn convention(&self, of_format: Convention) -> Convention {
+        Convention {
+            theta_positive: self.theta_positive.unwrap_or(of_format.theta_positive),
+            phi_zero: self.phi_zero.unwrap_or(of_format.phi_zero),
+        }
+    }
+}
+
+impl Measurements {
+    /// Reads a file of any [`Format`].
+    pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, ReadError> {
+        match options.format.unwrap_or_default() {
+            Format::Csv => Self::read_csv_with(path, options.convention(Convention::default())),
+        }
+    }
+}
 
 /// Which side of the surface normal, or which azimuth, a file calls positive or zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

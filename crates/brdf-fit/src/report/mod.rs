@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use crate::assessment::{Assessment, assess_watched, sufficient_model};
 use crate::measurement::{Measurement, Measurements, Metadata};
 use crate::model::Model;
-use crate::read::Convention;
+use crate::read::{Convention, Format};
 use crate::solver::Ending;
 use crate::stages::{Fit, FitError, FitOptions, fit_scan};
 use crate::uncertainty::Uncertainty;
@@ -41,6 +41,12 @@ pub struct Report {
     /// The angular convention in which the file was read.
     #[serde(default)]
     pub convention: Convention,
+    /// The format of the file.
+    #[serde(default)]
+    pub format: Format,
+    /// What was converted on the way from the file to the readings, and what was left out.
+    #[serde(default)]
+    pub conversions: Vec<String>,
     /// Wavelength in micrometres, where the file states one.
     pub wavelength_um: Option<f64>,
     /// The model that was to be fitted.
@@ -121,6 +127,8 @@ impl Report {
             metadata: measurements.metadata.clone(),
             ignored_columns: measurements.ignored_columns.clone(),
             convention: measurements.convention,
+            format: measurements.format,
+            conversions: measurements.conversions.clone(),
             wavelength_um: measurements.wavelengths().first().copied().flatten(),
             readings: measurements.readings().len(),
             model: options.model,

@@ -74,6 +74,9 @@ impl Report {
         for warning in &self.warnings {
             let _ = writeln!(text, "  warning: {warning}");
         }
+        for conversion in &self.conversions {
+            let _ = writeln!(text, "  read: {conversion}");
+        }
         if !self.ignored_columns.is_empty() {
             let columns = self.ignored_columns.join(", ");
             let _ = writeln!(text, "  columns not used: {columns}");

@@ -1,0 +1,8 @@
+//! A fitted BRDF in the forms that other programs take: source code, tables, scenes. One file a
+//! form.
+
+mod coating;
+mod target;
+
+pub use coating::{Coating, CoatingError, Fitted};
+pub use target::{ExportError, ExportOptions, Target, export};

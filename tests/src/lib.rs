@@ -8,8 +8,11 @@
 
 pub mod data;
 pub mod picture;
+mod python;
 pub mod samples;
 pub mod textbook;
+
+pub use python::python;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -55,6 +58,12 @@ pub fn fit_command() -> Command {
 pub fn trade_command() -> Command {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
     Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "trade")))
+}
+
+/// The program `export`, to be started.
+pub fn export_command() -> Command {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "export")))
 }
 
 /// The program `viewer`, to be started.

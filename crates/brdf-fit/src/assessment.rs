@@ -6,6 +6,7 @@ use std::fmt;
 
 use brdf_core::fresnel::Dielectric;
 use brdf_core::{AnyBrdf, ModelParameters};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::measurement::Measurements;
@@ -212,8 +213,11 @@ pub(crate) fn assess_watched(
     };
     let options = plain(&fit.options);
     let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
-    for &model in models {
-        match rung(scan, model, &options, &progress) {
+    let made = models
+        .par_iter()
+        .map(|&model| (model, rung(scan, model, &options, &progress)));
+    for (model, rung) in made.collect::<Vec<_>>() {
+        match rung {
             Ok(rung) => rungs.push(rung),
             Err(FitError::Cancelled) => return Err(FitError::Cancelled),
             Err(error) => left_out.push(LeftOut {

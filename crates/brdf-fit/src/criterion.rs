@@ -1,11 +1,13 @@
 //! The error criterion E of eq. (5), with its derivatives by the parameters.
 
+mod condensed;
+
 use std::ops::{Range, RangeInclusive};
 
 use brdf_core::facet::{Beckmann, Ellipsoid, FacetDistribution, Ggx, Power};
 use brdf_core::fresnel::Dielectric;
 use brdf_core::shadowing::{Shadowing, Smith, VGroove};
-use brdf_core::{Family, GeometryError, ModelParameters};
+use brdf_core::{Family, Geometry, GeometryError, ModelParameters};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -73,11 +75,28 @@ struct Angles {
     sin2_gamma: f64,
 }
 
+impl Angles {
+    fn of(geometry: &Geometry) -> Self {
+        Self {
+            tan2_alpha: geometry.tan2_alpha(),
+            sec_alpha: geometry.sec_alpha(),
+            cos_psi: geometry.cos_psi(),
+            cos_theta: geometry.cos_theta(),
+            cos_gamma: geometry.cos_gamma(),
+            sin2_gamma: geometry.sin2_gamma(),
+        }
+    }
+}
+
 /// The rows of one incidence.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Segment {
     pub(crate) psi: f64,
     pub(crate) rows: Range<usize>,
+    /// How many readings the rows stand for.
+    pub(crate) readings: usize,
+    /// How many of them have a weight of zero.
+    weightless: usize,
 }
 
 /// E of one incidence by itself: numerator and denominator of eq. (5) over its readings only.
@@ -96,7 +115,7 @@ impl IncidenceError {
     pub(crate) fn new(segment: &Segment, e_percent: Option<f64>) -> Self {
         Self {
             psi_deg: in_degrees(segment.psi),
-            readings: segment.rows.len(),
+            readings: segment.readings,
             e_percent,
         }
     }
@@ -205,64 +224,107 @@ impl Criterion {
                     Family::Smith | Family::Ggx => a,
                     _ => a * VGroove.over_cosines_at(&geometry),
                 });
-                criterion.angles.push(Angles {
-                    tan2_alpha: geometry.tan2_alpha(),
-                    sec_alpha: geometry.sec_alpha(),
-                    cos_psi: geometry.cos_psi(),
-                    cos_theta: geometry.cos_theta(),
-                    cos_gamma: geometry.cos_gamma(),
-                    sin2_gamma: geometry.sin2_gamma(),
-                });
+                criterion.angles.push(Angles::of(&geometry));
                 criterion.readings.push(i);
                 match (&mut criterion.noise, reading.sigma) {
                     (Some(noise), Some(sigma)) => noise.push(w * sigma),
                     (noise, _) => *noise = None,
                 }
             }
-            criterion.segments.push(Segment {
-                psi: incidence.psi,
-                rows: start..criterion.len(),
-            });
+            criterion.close_segment(incidence.psi, start);
         }
         criterion.fresnel = criterion.fresnel_column(n);
         criterion.normalised()
     }
 
+    /// The same E over the readings of a table in fewer rows, which are no readings: see
+    /// [`condensed`]. Of other measurements, and where the shadowing depends on a parameter, each
+    /// reading is a row.
+    pub(crate) fn condensed(
+        measurements: &Measurements,
+        family: Family,
+        n: f64,
+        weights: &Weights,
+    ) -> Result<Self, CriterionError> {
+        let by_width = matches!(family, Family::Smith | Family::Ggx);
+        if by_width || !measurements.is_table() {
+            return Self::new(measurements, family, n, weights);
+        }
+        let weights = weights
+            .of_all(measurements)
+            .ok_or(CriterionError::NoSigma)?;
+        let readings = measurements.readings();
+        let row = |i: usize, geometry: &Geometry| {
+            let w = weights[i].sqrt() * geometry.cos_theta();
+            let a = w / std::f64::consts::PI;
+            [
+                a,
+                a * VGroove.over_cosines_at(geometry),
+                w * readings[i].brdf,
+            ]
+        };
+        let incidences = measurements.incidences();
+        let rows = condensed::rows(&incidences, readings, row)?;
+        let mut criterion = Self::with_capacity(family, n, 0);
+        criterion.noise = None;
+        for (incidence, rows) in incidences.iter().zip(rows) {
+            criterion.append(incidence.psi, rows);
+        }
+        criterion.fresnel = criterion.fresnel_column(n);
+        criterion.normalised()
+    }
+
+    /// Ends the rows of an incidence, each of which is a reading.
+    fn close_segment(&mut self, psi: f64, start: usize) {
+        let rows = start..self.len();
+        let weightless = self.diffuse[rows.clone()].iter().filter(|&&a| a == 0.0);
+        self.segments.push(Segment {
+            psi,
+            readings: rows.len(),
+            weightless: weightless.count(),
+            rows,
+        });
+    }
+
     /// The criterion over some of the incidences: those whose index `keep` accepts.
     pub(crate) fn subset(&self, keep: impl Fn(usize) -> bool) -> Result<Self, CriterionError> {
-        let kept = |(_, segment): (usize, &Segment)| (segment.psi, segment.rows.clone().collect());
         let segments = self.segments.iter().enumerate();
-        self.picked(segments.filter(|(i, _)| keep(*i)).map(kept).collect())
+        let kept = segments.filter(|(i, _)| keep(*i));
+        self.picked(kept.map(|(_, segment)| segment), 1)
     }
 
     /// The criterion over at most about `limit` of the rows, evenly over each incidence.
     pub(crate) fn thinned(&self, limit: usize) -> Result<Self, CriterionError> {
-        let step = self.len().div_ceil(limit);
-        let kept = |segment: &Segment| (segment.psi, segment.rows.clone().step_by(step).collect());
-        self.picked(self.segments.iter().map(kept).collect())
+        self.picked(self.segments.iter(), self.len().div_ceil(limit))
     }
 
-    /// The criterion over the given rows of each incidence.
-    fn picked(&self, segments: Vec<(f64, Vec<usize>)>) -> Result<Self, CriterionError> {
-        let mut criterion = Self::with_capacity(self.family, self.n, self.len());
+    /// The criterion over every so many of the rows of the given incidences.
+    fn picked<'a>(
+        &self,
+        segments: impl Iterator<Item = &'a Segment>,
+        step: usize,
+    ) -> Result<Self, CriterionError> {
+        let mut criterion = Self::with_capacity(self.family, self.n, self.len() / step);
         if self.noise.is_none() {
             criterion.noise = None;
         }
-        for (psi, rows) in segments {
+        for segment in segments {
             let start = criterion.len();
-            for i in rows {
+            for i in segment.rows.clone().step_by(step) {
                 criterion.measured.push(self.measured[i]);
                 criterion.diffuse.push(self.diffuse[i]);
                 criterion.shadowed.push(self.shadowed[i]);
                 criterion.fresnel.push(self.fresnel[i]);
                 criterion.angles.push(self.angles[i]);
-                criterion.readings.push(self.readings[i]);
+                criterion.readings.extend(self.readings.get(i));
                 if let (Some(to), Some(from)) = (&mut criterion.noise, &self.noise) {
                     to.push(from[i]);
                 }
             }
-            let rows = start..criterion.len();
-            criterion.segments.push(Segment { psi, rows });
+            criterion.close_segment(segment.psi, start);
+            if let (1, Some(whole)) = (step, criterion.segments.last_mut()) {
+                (whole.readings, whole.weightless) = (segment.readings, segment.weightless);
+            }
         }
         criterion.normalised()
     }
@@ -284,22 +346,22 @@ impl Criterion {
 
     /// How many readings have a weight of zero.
     pub fn weightless(&self) -> usize {
-        self.diffuse.iter().filter(|&&a| a == 0.0).count()
+        self.segments.iter().map(|segment| segment.weightless).sum()
     }
 
     /// Whether more readings have a say than there are free parameters.
     pub(crate) fn suffices_for(&self, free: &[Parameter]) -> bool {
-        self.len() - self.weightless() > free.len()
+        self.count() - self.weightless() > free.len()
     }
 
     /// How many readings there are.
-    pub fn len(&self) -> usize {
-        self.measured.len()
+    pub fn count(&self) -> usize {
+        self.segments.iter().map(|segment| segment.readings).sum()
     }
 
-    /// Whether there are no readings.
-    pub fn is_empty(&self) -> bool {
-        self.measured.is_empty()
+    /// How many rows there are: one for each reading, fewer for the readings of a table.
+    pub(crate) fn len(&self) -> usize {
+        self.measured.len()
     }
 
     /// The rows of each incidence, in ascending order.

@@ -45,6 +45,7 @@ pub mod report;
 pub mod robust;
 pub mod solver;
 pub mod stages;
+mod stratified;
 pub mod synthetic;
 pub mod trade;
 pub mod uncertainty;

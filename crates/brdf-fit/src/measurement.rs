@@ -1,6 +1,7 @@
 //! Readings of a goniometer, validated and in the model's convention.
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use brdf_core::{Geometry, GeometryError};
@@ -110,7 +111,7 @@ const SAME_ANGLE: f64 = 0.05 * PI / 180.0;
 /// The readings of one incidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Incidence {
-    /// The (smallest) incidence angle psi in radians.
+    /// The (smallest) incidence angle psi in radians; the middle of a class of a table.
     pub psi: f64,
     /// The indices of its readings, in the order of the file.
     pub readings: Vec<usize>,
@@ -148,6 +149,9 @@ pub struct Measurements {
     /// What was converted on the way from the file to the readings, and what was left out and how
     /// many of it, one sentence each.
     pub conversions: Vec<String>,
+    /// The width of classes of incidence angles, in radians, where the readings are of a table whose
+    /// coordinates are others.
+    pub(crate) incidence_class: Option<f64>,
     pub(crate) readings: Vec<Measurement>,
 }
 
@@ -173,6 +177,11 @@ impl Measurements {
     /// All readings, in the order of the file.
     pub fn readings(&self) -> &[Measurement] {
         &self.readings
+    }
+
+    /// Whether the readings are of a table whose coordinates are not those of a goniometer.
+    pub(crate) fn is_table(&self) -> bool {
+        self.incidence_class.is_some()
     }
 
     /// The wavelengths in micrometres, ascending; a single `None` where the scan states none.
@@ -206,8 +215,34 @@ impl Measurements {
     }
 
     /// The incidences in ascending order, each with its readings. Angles that differ by less than
-    /// 0.05 deg, as an instrument sets them, are one incidence.
+    /// 0.05 deg, as an instrument sets them, are one incidence; of a table without incidences, those
+    /// of a class of 5 deg are, psi being its middle.
     pub fn incidences(&self) -> Vec<Incidence> {
+        match self.incidence_class {
+            None => self.set_incidences(),
+            Some(width) => self.classes(width),
+        }
+    }
+
+    fn classes(&self, width: f64) -> Vec<Incidence> {
+        let mut classes: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
+        for (i, reading) in self.readings.iter().enumerate() {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a small number, not negative"
+            )]
+            let class = (reading.psi / width) as u64;
+            classes.entry(class).or_default().push(i);
+        }
+        let of_class = |(class, readings)| Incidence {
+            psi: (class as f64 + 0.5) * width,
+            readings,
+        };
+        classes.into_iter().map(of_class).collect()
+    }
+
+    fn set_incidences(&self) -> Vec<Incidence> {
         let mut order: Vec<usize> = (0..self.readings.len()).collect();
         order.sort_by(|&a, &b| self.readings[a].psi.total_cmp(&self.readings[b].psi));
         let mut incidences: Vec<Incidence> = Vec::new();
@@ -249,9 +284,12 @@ impl Measurements {
     }
 
     /// At most about `limit` of the readings, evenly over each incidence in the order of the file,
-    /// and at least one of each.
+    /// and at least one of each; of a table, [`sampled`](Self::sampled).
     #[must_use]
     pub fn thinned(&self, limit: usize) -> Self {
+        if self.is_table() {
+            return self.sampled(limit);
+        }
         let step = self.readings.len().div_ceil(limit.max(1)).max(1);
         let incidences = self.incidences();
         let mut kept: Vec<usize> = incidences
@@ -289,6 +327,7 @@ impl Measurements {
             convention: self.convention,
             format: self.format,
             conversions: self.conversions.clone(),
+            incidence_class: self.incidence_class,
             readings: Vec::new(),
         }
     }

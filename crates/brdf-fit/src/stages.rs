@@ -437,7 +437,11 @@ pub(crate) fn fit_scan(
     check_readings(measurements, model)?;
     let n = refractive_index(measurements, options, wavelength_um)?;
 
-    let all = Criterion::new(measurements, model.family(), n, &options.weights)?;
+    // A robust loss looks at each reading.
+    let all = match options.robust {
+        None => Criterion::condensed(measurements, model.family(), n, &options.weights)?,
+        Some(_) => Criterion::new(measurements, model.family(), n, &options.weights)?,
+    };
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
     if let (None, Some(reason)) = (options.stage2, &first.left_out) {
@@ -445,7 +449,7 @@ pub(crate) fn fit_scan(
     }
     let own = first.criterion.as_ref().unwrap_or(&all);
     let fitted = options.stage2.map_or(own, |_| &all);
-    let (count, weightless) = (fitted.len(), fitted.weightless());
+    let (count, weightless) = (fitted.count(), fitted.weightless());
     if !fitted.suffices_for(model.free()) {
         return Err(too_few(count - weightless, model));
     }
@@ -679,7 +683,7 @@ impl<'a> FirstStage<'a> {
             criterion: None,
             left_out,
         };
-        if options.stage1.is_none() || readings == all.len() {
+        if options.stage1.is_none() || readings == all.count() {
             return everything(None);
         }
         if readings <= options.held_model().free().len() {
@@ -714,7 +718,7 @@ fn run(
         method,
         parameters: minimum.parameters,
         e_percent: own_and_all(own, all, &minimum.parameters),
-        readings: own.len(),
+        readings: own.count(),
         iterations: minimum.iterations,
         evaluations: minimum.evaluations,
         seconds: started.elapsed().as_secs_f64(),

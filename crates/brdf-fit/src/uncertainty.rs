@@ -247,7 +247,7 @@ impl Uncertainty {
         variance_factor: f64,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
-        let readings = criterion.len() - criterion.weightless();
+        let readings = criterion.count() - criterion.weightless();
         let on_bound = |parameter: &Parameter| is_on_bound(*parameter, at);
         let covered: Vec<Parameter> = model
             .free()

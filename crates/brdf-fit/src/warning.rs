@@ -192,7 +192,6 @@ pub(crate) fn warnings(
     uncertainty: &Uncertainty,
     progress: &Progress<'_>,
 ) -> Result<Vec<Warning>, Cancelled> {
-    let readings = measurements.readings();
     let mut warnings = Vec::new();
     if fit.e_percent > NOT_DESCRIBED_PERCENT {
         warnings.push(Warning::NotDescribed {
@@ -204,7 +203,7 @@ pub(crate) fn warnings(
     warnings.extend(larger_than_stated_errors(uncertainty));
     warnings.extend(reflectance_above_one(fit));
     warnings.extend(iteration_limits(fit));
-    warnings.extend(about_readings(readings, fit));
+    warnings.extend(about_readings(measurements, fit));
     Ok(warnings)
 }
 
@@ -238,7 +237,8 @@ fn turned_round(
     fit: &Fit,
     progress: &Progress<'_>,
 ) -> Result<Option<Warning>, Cancelled> {
-    if fit.e_percent <= FITS_WELL_PERCENT {
+    // A table's format leaves no doubt about the sides.
+    if fit.e_percent <= FITS_WELL_PERCENT || measurements.is_table() {
         return Ok(None);
     }
     let turned: Vec<Measurement> = measurements
@@ -294,7 +294,8 @@ fn iteration_limits(fit: &Fit) -> impl Iterator<Item = Warning> {
     })
 }
 
-fn about_readings(readings: &[Measurement], fit: &Fit) -> impl Iterator<Item = Warning> {
+fn about_readings(measurements: &Measurements, fit: &Fit) -> impl Iterator<Item = Warning> {
+    let readings = measurements.readings();
     // Those without an E weigh nothing, or are zero.
     let incidences = fit
         .incidences
@@ -303,7 +304,12 @@ fn about_readings(readings: &[Measurement], fit: &Fit) -> impl Iterator<Item = W
         .count();
     let weightless = fit.weightless;
     let negative = readings.iter().filter(|r| r.brdf < 0.0).count();
-    let repeated = repeated_readings(readings);
+    // The bins of a table are different directions.
+    let repeated = if measurements.is_table() {
+        0
+    } else {
+        repeated_readings(readings)
+    };
     let smallest_tilt = readings
         .iter()
         .filter_map(|r| r.geometry().ok())

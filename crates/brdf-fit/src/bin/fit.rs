@@ -1,20 +1,22 @@
 //! The command line: fits goniometer scans and prints, or writes, what came out.
 
 use std::io;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use brdf_fit::energy::USUAL_LIMIT_DEG;
 use brdf_fit::model::{Held, Model};
 use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file, write_json};
-use brdf_fit::read::{Format, ReadError, ReadOptions, Side};
+use brdf_fit::read::{Format, ReadError, ReadOptions, Scan, Side};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
     write_models, write_parameters,
 };
 use brdf_fit::robust::Loss;
+use brdf_fit::watch::{Step, Unwatched, Watch};
 use brdf_fit::weights::{AngleWeight, Weights};
-use brdf_fit::{FitError, FitOptions, Measurements, Method, RefractiveIndex};
+use brdf_fit::{FitError, FitOptions, Method, RefractiveIndex};
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -116,6 +118,11 @@ struct Arguments {
     /// Format of the files, instead of what their content and their extension say: csv
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
+
+    /// Fit this many readings of each wavelength instead of all, evenly over the angles theta_h,
+    /// theta_d and phi_d of half vector and difference
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..))]
+    sample: Option<u64>,
 
     /// The side of the surface normal on which the files count theta positive, source or forward
     /// [default: source; with --again as it was]
@@ -295,6 +302,7 @@ impl Arguments {
             format: self.format,
             theta_positive: self.theta_positive.or(before.map(|b| b.theta_positive)),
             phi_zero: self.phi_zero.or(before.map(|b| b.phi_zero)),
+            sample: self.sample.and_then(|count| usize::try_from(count).ok()),
         }
     }
 }
@@ -333,25 +341,24 @@ fn main() -> ExitCode {
     let (scans, read) = read_all(&arguments, &arguments.read_options(document.as_ref()));
     let (jobs, planned) = plan(&scans, &arguments, document.as_ref());
     let mut outcome = read.max(planned);
-    let results = fit_all(&jobs, &arguments);
-    for (report, error) in &results {
-        let Some(error) = error else { continue };
-        let status = if error.is_usage() {
-            Outcome::BadUsageOrFile
-        } else {
-            Outcome::SomeFailed
-        };
-        outcome = outcome.max(status);
-        let model = if arguments.fits_every_model() {
-            format!(", {}", report.model)
-        } else {
-            String::new()
-        };
-        let scan = named(&report.file, report.wavelength_um);
-        complain(&format!("{scan}{model}: {error}"));
+    let fits = fit_all(&jobs, &arguments);
+    let (mut scans, mut reports) = (Vec::new(), Vec::new());
+    for ((scan, _), fit) in jobs.iter().zip(fits) {
+        match fit {
+            Ok((report, error)) => {
+                if let Some(error) = error {
+                    outcome = outcome.max(told(&report, &error, &arguments));
+                }
+                scans.push(*scan);
+                reports.push(report);
+            }
+            Err(error) => {
+                complain(&error.to_string());
+                outcome = Outcome::BadUsageOrFile;
+            }
+        }
     }
-    let reports: Vec<Report> = results.into_iter().map(|(report, _)| report).collect();
-    if let Err(messages) = deliver(&arguments, &jobs, reports) {
+    if let Err(messages) = deliver(&arguments, &scans, reports) {
         for message in messages {
             complain(&message);
         }
@@ -360,18 +367,34 @@ fn main() -> ExitCode {
     outcome.into()
 }
 
+/// Complains about a fit that failed.
+fn told(report: &Report, error: &FitError, arguments: &Arguments) -> Outcome {
+    let model = if arguments.fits_every_model() {
+        format!(", {}", report.model)
+    } else {
+        String::new()
+    };
+    let scan = named(&report.file, report.wavelength_um);
+    complain(&format!("{scan}{model}: {error}"));
+    if error.is_usage() {
+        Outcome::BadUsageOrFile
+    } else {
+        Outcome::SomeFailed
+    }
+}
+
 /// Reads every file, and complains about those that cannot be read.
-fn read_all(arguments: &Arguments, options: &ReadOptions) -> (Vec<Measurements>, Outcome) {
-    let files: Vec<Result<Measurements, ReadError>> = arguments
+fn read_all(arguments: &Arguments, options: &ReadOptions) -> (Vec<Scan>, Outcome) {
+    let files: Vec<Result<Vec<Scan>, ReadError>> = arguments
         .files
         .par_iter()
-        .map(|file| Measurements::read(file, options))
+        .map(|file| Scan::of_file(file, options))
         .collect();
     let mut outcome = Outcome::AllFitted;
     let mut scans = Vec::new();
     for file in files {
         match file {
-            Ok(measurements) => scans.extend(measurements.by_wavelength()),
+            Ok(of_file) => scans.extend(of_file),
             Err(error) => {
                 complain(&error.to_string());
                 outcome = Outcome::BadUsageOrFile;
@@ -382,27 +405,28 @@ fn read_all(arguments: &Arguments, options: &ReadOptions) -> (Vec<Measurements>,
 }
 
 /// A scan of one wavelength, and how it is fitted.
-type Job<'a> = (&'a Measurements, FitOptions);
+type Job<'a> = (&'a Scan, FitOptions);
 
 /// The fits of all scans, in the order of the files, wavelengths and models; complains about scans
 /// of which the document says nothing.
 fn plan<'a>(
-    scans: &'a [Measurements],
+    scans: &'a [Scan],
     arguments: &Arguments,
     document: Option<&Document>,
 ) -> (Vec<Job<'a>>, Outcome) {
     let mut jobs = Vec::new();
     let mut outcome = Outcome::AllFitted;
     for scan in scans {
+        let (source, wavelength_um) = (scan.source(), scan.wavelength_um());
         let options = match document {
             None => Some(arguments.options()),
-            Some(document) => document.options_for(scan).cloned(),
+            Some(document) => document.options_for(&source, wavelength_um).cloned(),
         };
         if let Some(options) = options {
             let models = arguments.models(options);
             jobs.extend(models.into_iter().map(|options| (scan, options)));
         } else {
-            let scan = named(&scan.source, scan.wavelengths().first().copied().flatten());
+            let scan = named(&source, wavelength_um);
             complain(&format!(
                 "{scan}: no fit of this wavelength in the file of --again"
             ));
@@ -418,36 +442,76 @@ fn named(file: &str, wavelength_um: Option<f64>) -> String {
     format!("{file}{wavelength}")
 }
 
-/// Makes all fits side by side.
-fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<(Report, Option<FitError>)> {
+/// A report and why there is no fit in it; or why its readings are not to be had.
+type Made = Result<(Report, Option<FitError>), ReadError>;
+
+/// Tells the phase of a fit beside the bar.
+struct ToldPhase<'a> {
+    bar: &'a ProgressBar,
+    scan: String,
+}
+
+impl Watch for ToldPhase<'_> {
+    fn step(&self, step: &Step) -> ControlFlow<()> {
+        if step.iteration == 0 {
+            self.bar
+                .set_message(format!("{}: {}", self.scan, step.phase));
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// Makes all fits side by side, but one after the other those of tables, of whose readings no more
+/// than one channel is in memory at once.
+fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<Made> {
     let (choice, depth) = (arguments.choice(), arguments.depth());
     // Drawn on standard error, and there only if that is a terminal.
     let bar = ProgressBar::new(jobs.len() as u64);
-    if let Ok(style) = ProgressStyle::with_template("fitting {bar:40} {pos}/{len}") {
+    if let Ok(style) = ProgressStyle::with_template("fitting {bar:40} {pos}/{len} {msg}") {
         bar.set_style(style);
     }
-    let results = jobs
-        .par_iter()
-        .map(|(scan, options)| {
-            let result = Report::of_choice(scan, options, choice, depth);
-            bar.inc(1);
-            result
-        })
-        .collect();
+    let make = |(scan, options): &Job<'_>, watch: &dyn Watch| {
+        let measurements = scan.measurements()?;
+        let made = Report::of_watched(&measurements, options, choice, depth, watch);
+        bar.inc(1);
+        Ok(made)
+    };
+    let of_table = |job: &Job<'_>| {
+        let scan = named(&job.0.source(), job.0.wavelength_um());
+        make(job, &ToldPhase { bar: &bar, scan })
+    };
+    let in_file = |(scan, _): &Job<'_>| scan.is_in_file();
+    let mut of_tables = jobs
+        .iter()
+        .filter(|job| in_file(job))
+        .map(of_table)
+        .collect::<Vec<_>>()
+        .into_iter();
+    let others = jobs.par_iter().filter(|job| !in_file(job));
+    let others = others.map(|job| make(job, &Unwatched));
+    let mut others = others.collect::<Vec<_>>().into_iter();
+    let next = |job| {
+        if in_file(job) {
+            of_tables.next()
+        } else {
+            others.next()
+        }
+    };
+    let all = jobs.iter().filter_map(next).collect();
     bar.finish_and_clear();
-    results
+    all
 }
 
 /// Writes the files and prints; what fails keeps nothing else from being delivered.
 fn deliver(
     arguments: &Arguments,
-    jobs: &[Job<'_>],
+    scans: &[&Scan],
     reports: Vec<Report>,
 ) -> Result<(), Vec<String>> {
-    let scans = jobs.iter().map(|(scan, _)| *scan);
+    let scans = scans.iter().copied();
     let mut failed = Vec::new();
     if let Some(folder) = &arguments.plot {
-        let reports: Vec<(&Measurements, &Report)> = scans.clone().zip(&reports).collect();
+        let reports: Vec<(&Scan, &Report)> = scans.clone().zip(&reports).collect();
         failed.extend(
             write_folder(&reports, folder)
                 .err()

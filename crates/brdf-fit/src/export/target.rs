@@ -4,17 +4,20 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use super::coating::{Coating, CoatingError};
+use super::merl;
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
+    /// A MERL table of three channels.
+    Merl,
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 1] = [(Self::Json, "json")];
+    pub const NAMED: [(Self, &str); 2] = [(Self::Merl, "merl"), (Self::Json, "json")];
 }
 
 impl FromStr for Target {
@@ -57,6 +60,11 @@ pub fn export(
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
     match target {
+        Target::Merl => {
+            let fits = coating.fits.as_slice();
+            let fit = |i: usize| &fits[i.min(fits.len() - 1)].brdf;
+            merl::write([0, 1, 2].map(fit), writer)?;
+        }
         Target::Json => coating.write(writer)?,
     }
     Ok(())

@@ -2,6 +2,10 @@
 
 pub mod csv;
 mod fields;
+pub mod merl;
+mod scan;
+
+pub use scan::Scan;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -18,11 +22,13 @@ pub enum Format {
     /// The project's own table: [`csv`].
     #[default]
     Csv,
+    /// A MERL table: [`merl`].
+    Merl,
 }
 
 impl Format {
     /// All formats, with the names that options and files give them.
-    pub const NAMED: [(Self, &str); 1] = [(Self::Csv, "csv")];
+    pub const NAMED: [(Self, &str); 2] = [(Self::Csv, "csv"), (Self::Merl, "merl")];
 
     /// The name that options and files give it.
     pub fn name(self) -> &'static str {
@@ -52,6 +58,9 @@ pub struct ReadOptions {
     pub theta_positive: Option<Side>,
     /// The side on which the file's azimuth is zero; as its format has it where it is not given.
     pub phi_zero: Option<Side>,
+    /// How many readings of each wavelength are kept, evenly over the directions; all where it is not
+    /// given.
+    pub sample: Option<usize>,
 }
 
 impl ReadOptions {
@@ -64,12 +73,54 @@ impl ReadOptions {
     }
 }
 
+impl Format {
+    /// The format in which a file is read.
+    pub(crate) fn of_file(path: &Path, options: &ReadOptions) -> Self {
+        options.format.unwrap_or_else(|| {
+            if merl::is_table(path) {
+                Self::Merl
+            } else {
+                Self::Csv
+            }
+        })
+    }
+}
+
 impl Measurements {
     /// Reads a file of any [`Format`].
+    ///
+    /// All readings of a MERL table take 210 MB; [`Scan::of_file`] reads one channel at a time.
     pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, ReadError> {
-        match options.format.unwrap_or_default() {
-            Format::Csv => Self::read_csv_with(path, options.convention(Convention::default())),
+        let path = path.as_ref();
+        let all = match Format::of_file(path, options) {
+            Format::Csv => Self::read_csv_with(path, options.convention(Convention::default()))?,
+            Format::Merl => {
+                let channels = merl::channels(merl::Table::open(path)?, options.sample);
+                return Self::together(channels);
+            }
+        };
+        Ok(match options.sample {
+            Some(count) => all.sampled(count),
+            None => all,
+        })
+    }
+
+    /// The readings of several wavelengths of one file.
+    fn together(scans: impl Iterator<Item = Result<Self, ReadError>>) -> Result<Self, ReadError> {
+        let mut together = Self::default();
+        for scan in scans {
+            let scan = scan?;
+            let mut readings = std::mem::take(&mut together.readings);
+            let mut conversions = std::mem::take(&mut together.conversions);
+            readings.extend_from_slice(&scan.readings);
+            conversions.extend_from_slice(&scan.conversions);
+            together = Self {
+                readings,
+                conversions,
+                ..scan
+            };
         }
+        Ok(together)
     }
 }
 

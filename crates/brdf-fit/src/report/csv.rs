@@ -7,6 +7,7 @@ use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 use super::Report;
 use crate::measurement::Measurements;
 use crate::plot::theory_curves;
+use crate::read::Scan;
 use crate::stages::Fit;
 use crate::words::in_degrees;
 
@@ -121,15 +122,17 @@ pub const THEORY_COLUMNS: [&str; 8] = [
 ];
 
 /// Writes theory and experiment side by side, incidence by incidence: f_r as measured, of the
-/// initial values, of stage 1 and of the fit, at every reading, in the model's convention.
+/// initial values, of stage 1 and of the fit, at every reading, in the model's convention. The
+/// readings of a table are read once more.
 pub fn write_curves<'a>(
-    fits: impl Iterator<Item = (&'a Measurements, &'a Fit)>,
+    fits: impl Iterator<Item = (&'a Scan, &'a Fit)>,
     writer: impl io::Write,
 ) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(CURVE_COLUMNS)?;
-    for (measurements, fit) in fits {
-        write_curves_of(measurements, fit, &mut csv)?;
+    for (scan, fit) in fits {
+        let measurements = scan.measurements().map_err(io::Error::other)?;
+        write_curves_of(&measurements, fit, &mut csv)?;
     }
     csv.flush()
 }

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::error::Category;
 
 use super::Report;
-use crate::measurement::Measurements;
 use crate::refractive_index::WAVELENGTH_TOLERANCE;
 use crate::stages::{FORMAT_VERSION, FitOptions};
 
@@ -119,12 +118,11 @@ impl Document {
         Ok(document)
     }
 
-    /// The options by which a scan of one wavelength was fitted: those of the fit whose wavelength
+    /// The options by which a scan of one wavelength, in micrometres, of a file was fitted: those of the fit whose wavelength
     /// is within 1 % of its own, or which states none either. Of several it is the one of the same
     /// file, next by the file's name, next by the nearest wavelength, and else the first.
-    pub fn options_for(&self, measurements: &Measurements) -> Option<&FitOptions> {
-        let wavelength_um = measurements.wavelengths().first().copied().flatten();
-        let source = Path::new(&measurements.source);
+    pub fn options_for(&self, source: &str, wavelength_um: Option<f64>) -> Option<&FitOptions> {
+        let source = Path::new(source);
         let key = |report: &Report| {
             let file = Path::new(&report.file);
             let other_name = file.file_name() != source.file_name();
@@ -159,9 +157,9 @@ mod tests {
     use brdf_core::Parameters;
 
     use super::*;
-    use crate::RefractiveIndex;
     use crate::report::Depth;
     use crate::synthetic::scan;
+    use crate::{Measurements, RefractiveIndex};
 
     fn report(file: &str, wavelength_um: Option<f64>, max_iterations: u64) -> Report {
         let options = FitOptions {
@@ -201,7 +199,7 @@ mod tests {
             ("b/x.csv", Some(0.6), None),
             ("b/x.csv", None, Some(4)),
         ] {
-            let options = document.options_for(&of(file, wavelength_um));
+            let options = document.options_for(file, wavelength_um);
             let found = options.map(|options| options.max_iterations);
             assert_eq!(found, expected, "{file} {wavelength_um:?}");
         }

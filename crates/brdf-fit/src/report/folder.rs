@@ -10,6 +10,7 @@ use super::{Report, html};
 use crate::measurement::Measurements;
 use crate::output::{WriteError, write_file};
 use crate::plot::{Figure, PlotError, figures, write_figures};
+use crate::read::{ReadError, Scan};
 
 /// The name of the page.
 pub const PAGE: &str = "report.html";
@@ -17,6 +18,9 @@ pub const PAGE: &str = "report.html";
 /// Why the folder could not be written whole.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderError {
+    /// The readings of a table could not be read once more.
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// A picture could not be drawn or written.
     #[error(transparent)]
     Plot(#[from] PlotError),
@@ -28,7 +32,7 @@ pub enum FolderError {
 /// Draws the pictures of each fit, as SVG and PNG named after its file and wavelength, and writes
 /// `report.html` with all of them and the tables. Returns the files that were written.
 pub fn write_folder(
-    reports: &[(&Measurements, &Report)],
+    reports: &[(&Scan, &Report)],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, FolderError> {
     let mut taken = HashSet::new();
@@ -39,12 +43,12 @@ pub fn write_folder(
     let drawn: Vec<(Vec<Figure>, Vec<PathBuf>)> = reports
         .par_iter()
         .zip(&prefixes)
-        .map(|((measurements, report), prefix)| {
-            let figures = figures_of(measurements, report)?;
+        .map(|((scan, report), prefix)| {
+            let figures = figures_of(&*scan.pictured()?, report)?;
             let files = write_figures(&figures, folder, prefix)?;
             Ok((figures, files))
         })
-        .collect::<Result<_, PlotError>>()?;
+        .collect::<Result<_, FolderError>>()?;
     let pages: Vec<(&Report, &[Figure])> = reports
         .iter()
         .zip(&drawn)

@@ -557,7 +557,7 @@ pub fn starting_values(
 ) -> Result<ModelParameters, FitError> {
     let wavelength_um = single_wavelength(measurements)?;
     let n = refractive_index(measurements, options, wavelength_um)?;
-    let all = Criterion::new(measurements, options.model.family(), n, &options.weights)?;
+    let all = Criterion::condensed(measurements, options.model.family(), n, &options.weights)?;
     let incidences = measurements.incidences();
     let first = FirstStage::choose(&all, &incidences, options);
     let own = first.criterion.as_ref().unwrap_or(&all);

@@ -11,10 +11,11 @@ use brdf_core::{AnyBrdf, ModelParameters, ThreeParameterBrdf};
 use brdf_fit::model::Model;
 use brdf_fit::output::{self, check_outputs, complain, write_file, write_json};
 use brdf_fit::plot::{Figure, PlotError};
+use brdf_fit::read::{ReadError, ReadOptions, Scan};
 use brdf_fit::report::Document;
 use brdf_fit::trade::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
 use brdf_fit::trade::fitting::{FitTrade, trade_fits, write_fit_trades};
-use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
+use brdf_fit::{FitOptions, RefractiveIndex};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::Serialize;
 
@@ -279,7 +280,8 @@ impl Evaluation {
 
 fn compare_fits(fitting: &Fitting) -> Outcome {
     fitting.outputs.check(Some(&fitting.file))?;
-    let scans = Measurements::read_csv(&fitting.file).map_err(|error| vec![error.to_string()])?;
+    let read = |error: ReadError| vec![error.to_string()];
+    let scans = Scan::of_file(&fitting.file, &ReadOptions::default()).map_err(read)?;
     let options = FitOptions {
         model: fitting.model,
         refractive_index: fitting.n.clone(),
@@ -287,8 +289,8 @@ fn compare_fits(fitting: &Fitting) -> Outcome {
     };
     let mut trades: Vec<FitTrade> = Vec::new();
     let mut failed = false;
-    for scan in scans.by_wavelength() {
-        match trade_fits(&scan, &options) {
+    for scan in scans {
+        match trade_fits(&*scan.measurements().map_err(read)?, &options) {
             Ok(trade) => trades.push(trade),
             Err(error) if error.is_usage() => {
                 return Err(vec![format!("{}: {error}", fitting.file.display())]);

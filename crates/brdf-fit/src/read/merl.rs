@@ -34,7 +34,7 @@ use crate::measurement::{Measurement, Measurements};
 use crate::words::counted;
 
 /// Bytes of the three numbers of bins.
-const HEADER: u64 = 12;
+const HEADER: usize = 12;
 
 /// Bytes of a value.
 const VALUE: usize = 8;
@@ -105,14 +105,16 @@ impl Bins {
             theta_d,
             phi_d,
         };
-        (bins.size()? > HEADER).then_some(bins)
+        bins.size()
+            .is_some_and(|size| size > HEADER as u64)
+            .then_some(bins)
     }
 
     /// Bytes of the whole file; `None` beyond what numbers can say.
     fn size(self) -> Option<u64> {
         let slab = self.theta_d.checked_mul(self.phi_d)?;
         let values = self.theta_h.checked_mul(slab)?.checked_mul(3 * VALUE)?;
-        u64::try_from(values).ok()?.checked_add(HEADER)
+        u64::try_from(values.checked_add(HEADER)?).ok()
     }
 
     fn per_slab(self) -> usize {
@@ -216,7 +218,7 @@ fn place(position: f64, bins: usize) -> usize {
 /// Whether a path leads to a table: see [`recognises`].
 pub(super) fn is_table(path: &Path) -> bool {
     let start = File::open(path).and_then(|mut file| {
-        let mut start = [0; HEADER as usize];
+        let mut start = [0; HEADER];
         file.read_exact(&mut start)?;
         Ok((start, file.metadata()?.len()))
     });
@@ -235,7 +237,7 @@ pub(super) fn recognises(start: &[u8], size: u64) -> bool {
     fits(numbers(header, i32::from_le_bytes)) || fits(numbers(header, i32::from_be_bytes))
 }
 
-fn numbers(header: &[u8; HEADER as usize], of: fn([u8; 4]) -> i32) -> [i32; 3] {
+fn numbers(header: &[u8; HEADER], of: fn([u8; 4]) -> i32) -> [i32; 3] {
     let (words, _) = header.as_chunks::<4>();
     std::array::from_fn(|i| of(words[i]))
 }
@@ -268,7 +270,7 @@ impl<R: Read + Seek> Table<R> {
     ///
     /// Errors: what does not begin with the numbers of bins of as many bytes.
     pub fn new(mut reader: R, name: &str) -> Result<Self, ReadError> {
-        let mut header = [0; HEADER as usize];
+        let mut header = [0; HEADER];
         let size = reader
             .seek(SeekFrom::End(0))
             .and_then(|size| {
@@ -276,7 +278,7 @@ impl<R: Read + Seek> Table<R> {
                 Ok(size)
             })
             .map_err(|error| io_error(name, error))?;
-        if size < HEADER {
+        if size < HEADER as u64 {
             let message = format!(
                 "has {}: expected a MERL table, which begins with three numbers of bins in 12 bytes",
                 counted(usize::try_from(size).unwrap_or(usize::MAX), "byte")
@@ -376,7 +378,7 @@ impl<R: Read + Seek> Table<R> {
     /// The bytes of a channel. There are as many in the file.
     fn values(&mut self, channel: Channel) -> Result<Vec<u8>, ReadError> {
         let length = VALUE * self.bins.count();
-        let start = HEADER + (channel as usize * length) as u64;
+        let start = (HEADER + channel as usize * length) as u64;
         let mut values = Vec::with_capacity(length);
         let read = self.reader.seek(SeekFrom::Start(start)).and_then(|_| {
             let mut rest = self.reader.by_ref().take(length as u64);
@@ -457,7 +459,7 @@ fn left_out(not_measured: usize, below: usize) -> Option<String> {
 }
 
 /// The numbers of bins, or what is wrong with them.
-fn checked_bins(header: &[u8; HEADER as usize], size: u64) -> Result<Bins, String> {
+fn checked_bins(header: &[u8; HEADER], size: u64) -> Result<Bins, String> {
     let little = numbers(header, i32::from_le_bytes);
     let as_big = Bins::of_numbers(numbers(header, i32::from_be_bytes));
     if as_big.and_then(Bins::size) == Some(size) {

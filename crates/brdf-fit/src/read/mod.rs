@@ -115,8 +115,8 @@ impl Measurements {
             readings.extend_from_slice(&scan.readings);
             conversions.extend_from_slice(&scan.conversions);
             together = Self {
-                readings,
                 conversions,
+                readings,
                 ..scan
             };
         }

@@ -189,7 +189,7 @@ fn compared(scan: &Measurements, options: &FitOptions) -> Result<FitTrade, FitEr
     let reference = Reference::of(&fitted)?;
     // Without the weights of a robust loss: E as the reference tells it.
     let fit = &fitted.fit;
-    let all = Criterion::new(scan, fit.model().family(), fit.n, &options.weights)?;
+    let all = Criterion::condensed(scan, fit.model().family(), fit.n, &options.weights)?;
     let trials = trials(scan, &options, fit.n);
     let times = timing::times(&trials, Trial::run);
     let runs = trials.iter().zip(times);

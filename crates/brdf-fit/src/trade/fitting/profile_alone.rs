@@ -48,7 +48,7 @@ pub(super) fn fit_by_profile(
 ) -> Result<Found, String> {
     let model = options.held_model();
     check(options, model, depth)?;
-    let criterion = Criterion::new(scan, model.family(), n, &options.weights)
+    let criterion = Criterion::condensed(scan, model.family(), n, &options.weights)
         .map_err(|error| error.to_string())?;
     if !criterion.suffices_for(model.free()) {
         let count = criterion.len() - criterion.weightless();

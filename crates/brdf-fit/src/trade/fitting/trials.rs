@@ -22,6 +22,9 @@ const STEPS: [(usize, &str); 3] = [
     (8, "every 8th reading"),
 ];
 
+/// How many readings of a table.
+const SAMPLES: [usize; 6] = [262_144, 65_536, 16_384, 4096, 1024, 256];
+
 /// Numbers of iterations of each stage.
 const ITERATIONS: [u64; 5] = [1, 2, 4, 8, 16];
 
@@ -163,15 +166,29 @@ fn without_check(options: &FitOptions) -> FitOptions {
 type Readings<'a> = Result<Cow<'a, Measurements>, String>;
 
 fn fewer_readings(scan: &Measurements) -> Vec<(String, Readings<'_>)> {
-    let mut fewer: Vec<(String, Readings<'_>)> = STEPS
-        .iter()
-        .map(|&(step, name)| (name.to_owned(), Ok(Cow::Owned(every_reading(scan, step)))))
-        .collect();
+    let mut fewer: Vec<(String, Readings<'_>)> = if scan.is_table() {
+        samples(scan).collect()
+    } else {
+        let every = |(step, name): &(usize, &str)| {
+            (name.to_string(), Ok(Cow::Owned(every_reading(scan, *step))))
+        };
+        STEPS.iter().map(every).collect()
+    };
     let second = every_second_incidence(scan).map(Cow::Owned);
     fewer.push(("every 2nd incidence".to_owned(), second));
     let smaller = without_largest(scan).map(Cow::Owned);
     fewer.push((without_largest_name(scan), smaller));
     fewer
+}
+
+/// Smaller and smaller samples of a table.
+fn samples(table: &Measurements) -> impl Iterator<Item = (String, Readings<'_>)> {
+    let all = table.readings().len();
+    let counts = SAMPLES.into_iter().filter(move |&count| count < all);
+    counts.map(|count| {
+        let sampled = Ok(Cow::Owned(table.sampled(count)));
+        (format!("sample of {count}"), sampled)
+    })
 }
 
 impl<'a> Trial<'a> {
@@ -302,6 +319,23 @@ mod tests {
             ..FitOptions::default()
         };
         assert_eq!(reference_options(&options), FitOptions::default());
+    }
+
+    #[test]
+    fn of_a_table_there_are_samples() {
+        let mut table = crate::synthetic::scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
+        table.incidence_class = Some(0.1);
+        let trials = trials(&table, &FitOptions::default(), 1.5);
+        let found = trials
+            .iter()
+            .find(|trial| trial.name == "sample of 256")
+            .unwrap();
+        assert_eq!(found.asked().1, 256);
+        assert!(
+            trials
+                .iter()
+                .all(|trial| !trial.name.starts_with("every 2nd reading"))
+        );
     }
 
     #[test]

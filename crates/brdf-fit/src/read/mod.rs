@@ -1,9 +1,19 @@
-//! Readers, one file a format.
+//! Readers, one file a format. Each converts once to the model's convention, and says so in
+//! [`Measurements::conversions`].
 
+mod angles;
+pub mod astm;
+pub mod black_lab;
 pub mod csv;
+mod detect;
 mod fields;
+pub mod goniometer;
+mod text;
+pub mod zemax;
 
 use std::fmt;
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -18,16 +28,34 @@ pub enum Format {
     /// The project's own table: [`csv`].
     #[default]
     Csv,
+    /// ASTM E1392 and E2387 text, also as Cornell wrote it: [`astm`].
+    Astm,
+    /// Zemax tabular BSDF: [`zemax`].
+    Zemax,
+    /// Reflectance factors of the Black Lab: [`black_lab`].
+    BlackLab,
+    /// Incidences in columns, views in rows: [`goniometer`].
+    Goniometer,
 }
 
 impl Format {
     /// All formats, with the names that options and files give them.
-    pub const NAMED: [(Self, &str); 1] = [(Self::Csv, "csv")];
+    pub const NAMED: [(Self, &str); 5] = [
+        (Self::Csv, "csv"),
+        (Self::Astm, "astm"),
+        (Self::Zemax, "zemax"),
+        (Self::BlackLab, "black-lab"),
+        (Self::Goniometer, "goniometer"),
+    ];
 
     /// The name that options and files give it.
     pub fn name(self) -> &'static str {
         let found = Self::NAMED.iter().find(|(format, _)| *format == self);
         found.map_or("", |(_, name)| name)
+    }
+
+    fn names() -> String {
+        Self::NAMED.map(|(_, name)| name).join(", ")
     }
 }
 
@@ -37,7 +65,7 @@ impl FromStr for Format {
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Self::NAMED.iter().find(|(_, name)| *name == text);
         found.map(|(format, _)| *format).ok_or_else(|| {
-            let names = Self::NAMED.map(|(_, name)| name).join(", ");
+            let names = Self::names();
             format!("\"{text}\" is not a format: expected one of {names}")
         })
     }
@@ -64,13 +92,73 @@ impl ReadOptions {
     }
 }
 
+impl ReadOptions {
+    /// The convention of a file whose format leaves no choice.
+    ///
+    /// Errors: an option says that it is another, and `why` it cannot be.
+    fn fixed(
+        &self,
+        path: &Path,
+        of_format: Convention,
+        why: &str,
+    ) -> Result<Convention, ReadError> {
+        if self.convention(of_format) == of_format {
+            return Ok(of_format);
+        }
+        let message = format!("its sides cannot be chosen: {why}");
+        Err(text::file_error(path, message))
+    }
+}
+
 impl Measurements {
     /// Reads a file of any [`Format`].
+    ///
+    /// Errors name the file, and where they can the line, the column and the value, and say what
+    /// was expected.
     pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, ReadError> {
-        match options.format.unwrap_or_default() {
-            Format::Csv => Self::read_csv_with(path, options.convention(Convention::default())),
-        }
+        let path = path.as_ref();
+        let io = |error| ReadError::Io {
+            path: path.to_owned(),
+            error,
+        };
+        let mut file = File::open(path).map_err(io)?;
+        let size = file.metadata().map_err(io)?.len();
+        let mut head = Vec::new();
+        let mut beginning = file.by_ref().take(detect::HEAD);
+        beginning.read_to_end(&mut head).map_err(io)?;
+        // A binary format goes on from here with its own limits; text is known by its lines.
+        let bytes = text::read_bytes(head, file, size).map_err(io)?;
+        of_bytes(path, &bytes, options)
     }
+
+    /// Reads what is in a file of any [`Format`]; `name` stands for the file in errors and reports,
+    /// and its extension for that of the file.
+    ///
+    /// Errors as those of [`read`](Self::read).
+    pub fn from_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, ReadError> {
+        of_bytes(Path::new(name), bytes, options)
+    }
+}
+
+fn of_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
+    let found = options.format.or_else(|| Format::detect(bytes, path));
+    let read = || match found.unwrap_or_default() {
+        Format::Csv => csv::read(
+            text::Text::new(path, bytes)?,
+            options.convention(Convention::default()),
+        ),
+        Format::Astm => astm::read(text::Text::new(path, bytes)?, options),
+        Format::Zemax => zemax::read(text::Text::new(path, bytes)?, options),
+        Format::BlackLab => black_lab::read(text::Text::new(path, bytes)?, options),
+        Format::Goniometer => goniometer::read(
+            text::Text::new(path, bytes)?,
+            options.convention(Convention::default()),
+        ),
+    };
+    read().map_err(|error| match found {
+        Some(_) => error,
+        None => error.with_known_formats(),
+    })
 }
 
 /// Which side of the surface normal, or which azimuth, a file calls positive or zero.
@@ -103,6 +191,22 @@ pub struct Convention {
     pub theta_positive: Side,
     /// The side on which phi is zero.
     pub phi_zero: Side,
+}
+
+impl Convention {
+    /// Theta and phi in radians in the model's convention, from degrees in this one.
+    fn in_model(self, theta_deg: f64, phi_deg: f64) -> (f64, f64) {
+        let theta = match self.theta_positive {
+            Side::Source => theta_deg,
+            Side::Forward => -theta_deg,
+        };
+        // In degrees, so that 180 deg remains what it is.
+        let phi = match self.phi_zero {
+            Side::Source => phi_deg,
+            Side::Forward => phi_deg + 180.0,
+        };
+        (theta.to_radians(), phi.to_radians())
+    }
 }
 
 /// What differs from the model's convention, in words; nothing where it is that.
@@ -154,10 +258,21 @@ pub enum ReadError {
         /// The line, from 1.
         line: u64,
         /// The name of the column.
-        column: &'static str,
+        column: String,
         /// What stands there.
         value: String,
         /// What was expected.
         message: String,
     },
+}
+
+impl ReadError {
+    /// The same of a file that may be of a format that is not known.
+    fn with_known_formats(mut self) -> Self {
+        if let Self::File { message, .. } | Self::Line { message, .. } = &mut self {
+            let names = Format::names();
+            *message = format!("{message}; known formats are {names}");
+        }
+        self
+    }
 }

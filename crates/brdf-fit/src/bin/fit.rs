@@ -25,14 +25,14 @@ use rayon::prelude::*;
 /// Each wavelength of each file is fitted by itself: initial values, stage 1 over the incidences
 /// up to a limit, stage 2 over all, and a search over k1 that checks the result against the global
 /// optimum. A file is a table with the columns psi_deg, theta_deg and brdf_per_sr, and if need be
-/// wavelength_um, phi_deg, sigma_per_sr and n.
+/// wavelength_um, phi_deg, sigma_per_sr and n, or in another of the formats of --format.
 ///
 /// Exit status: 0 when every fit succeeded, 1 when a fit failed (the others are delivered), 2 for
 /// bad usage, unreadable input or output that cannot be written.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 struct Arguments {
-    /// Scans, as text separated by commas, semicolons or tabs
+    /// Scans, in any of the formats of --format
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
@@ -113,7 +113,8 @@ struct Arguments {
     #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
     g2: Option<AngleWeight>,
 
-    /// Format of the files, instead of what their content and their extension say: csv
+    /// Format of the files, instead of what their content and their extension say: csv, astm (E1392,
+    /// E2387), zemax (tabular BSDF), black-lab, goniometer (incidences in columns, views in rows)
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
 

@@ -11,6 +11,7 @@ use brdf_core::{AnyBrdf, ModelParameters, ThreeParameterBrdf};
 use brdf_fit::model::Model;
 use brdf_fit::output::{self, check_outputs, complain, write_file, write_json};
 use brdf_fit::plot::{Figure, PlotError};
+use brdf_fit::read::ReadOptions;
 use brdf_fit::report::Document;
 use brdf_fit::trade::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
 use brdf_fit::trade::fitting::{FitTrade, trade_fits, write_fit_trades};
@@ -279,7 +280,8 @@ impl Evaluation {
 
 fn compare_fits(fitting: &Fitting) -> Outcome {
     fitting.outputs.check(Some(&fitting.file))?;
-    let scans = Measurements::read_csv(&fitting.file).map_err(|error| vec![error.to_string()])?;
+    let scans = Measurements::read(&fitting.file, &ReadOptions::default())
+        .map_err(|error| vec![error.to_string()])?;
     let options = FitOptions {
         model: fitting.model,
         refractive_index: fitting.n.clone(),

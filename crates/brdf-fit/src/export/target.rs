@@ -65,7 +65,7 @@ pub enum ExportError {
     /// No table of a size that is of use keeps to the tolerance.
     #[error(
         "a table within {tolerance:e} has more than {MOST_ENTRIES} entries: expected --tolerance \
-         {reachable:e} or more"
+         {reachable:.1e} or more, about"
     )]
     Tolerance {
         /// The tolerance that was asked for.

@@ -20,7 +20,9 @@
 //! of the azimuth shows in them, as the lobe of a coating stands at a difference of 180 deg.
 
 use super::angles::{AngleUnit, TwoDirections};
-use super::text::{BEYOND_HORIZON, Field, Quantity, Text, left_out, micrometres, words};
+use super::text::{
+    BEYOND_HORIZON, Field, Quantity, Text, is_angle, is_reading, left_out, micrometres, words,
+};
 use super::{Convention, Format, ReadError, ReadOptions};
 use crate::measurement::{Measurement, Measurements, Metadata};
 
@@ -109,7 +111,7 @@ impl Header {
         let mut degrees = [0.0; 4];
         for ((degrees, field), name) in degrees.iter_mut().zip(angles).zip(ANGLES) {
             let field = Field::plain(field);
-            *degrees = text.number(number, name, &field, "expected degrees", |_| true)?;
+            *degrees = text.number(number, name, &field, "expected degrees", is_angle)?;
         }
         let [theta_i, phi_i, theta_s, phi_s] = degrees;
         let directions = TwoDirections {
@@ -121,7 +123,7 @@ impl Header {
         let model = directions.in_model(AngleUnit::Degrees);
         for (field, (name, wavelength_um)) in values.iter().zip(&self.wavelengths) {
             let field = Field::plain(field);
-            let value = text.number(number, name, &field, "expected a reading", |_| true)?;
+            let value = text.number(number, name, &field, "expected a reading", is_reading)?;
             readings.extend(model.map(|(psi, theta, phi)| Measurement {
                 wavelength_um: Some(*wavelength_um),
                 psi,

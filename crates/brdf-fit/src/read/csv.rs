@@ -25,7 +25,9 @@ use std::path::Path;
 
 use brdf_core::brdf::check_refractive_index;
 
-use super::text::{Field, Quantity, Said, Text, comment_of, read_bytes, shown};
+use super::text::{
+    Field, Quantity, Said, Text, comment_of, is_deviation, is_reading, read_bytes, shown,
+};
 use super::{Convention, ReadError, fields};
 use crate::measurement::{Measurement, Measurements};
 use crate::refractive_index::RefractiveIndex;
@@ -361,10 +363,10 @@ impl Row<'_> {
             |x| x.abs() < 90.0,
         )?;
         let phi_deg = optional(columns.phi, PHI, "expected degrees", |_| true)?.unwrap_or(0.0);
-        let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", |_| true)?;
+        let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", is_reading)?;
         // A reading may have no standard deviation although others have one.
         let sigma = columns.sigma.filter(|&column| !self.is_blank(column));
-        let sigma = optional(sigma, SIGMA, "expected 1/sr above 0", positive)?;
+        let sigma = optional(sigma, SIGMA, "expected 1/sr above 0", is_deviation)?;
 
         let (theta, phi) = convention.in_model(theta_deg, phi_deg);
         Ok(Measurement {

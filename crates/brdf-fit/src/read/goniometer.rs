@@ -22,7 +22,9 @@
 //! There is no standard for such tables; this is what spreadsheets of goniometers have in common.
 //! The Black Lab's own files are no such table: see [`black_lab`](super::black_lab).
 
-use super::text::{Field, Quantity, Said, Text, comment_of, left_out, lines, parse_number};
+use super::text::{
+    Field, Quantity, Said, Text, comment_of, is_angle, is_reading, left_out, lines, parse_number,
+};
 use super::{Convention, Format, ReadError, fields};
 use crate::measurement::{Measurement, Measurements};
 
@@ -176,7 +178,7 @@ impl Table {
                 continue;
             }
             let name = format!("incidence {psi_deg}");
-            let reading = text.number(number, &name, &cell, "expected a reading", |_| true)?;
+            let reading = text.number(number, &name, &cell, "expected a reading", is_reading)?;
             self.cells.push([psi_deg, theta_deg, reading]);
         }
         Ok(())
@@ -193,7 +195,7 @@ impl Table {
         let wavelength_um = number("wavelength_um", "expected micrometres above 0", |um| {
             um > 0.0
         })?;
-        let phi_deg = number("phi_deg", "expected degrees", |_| true)?.unwrap_or(0.0);
+        let phi_deg = number("phi_deg", "expected degrees", is_angle)?.unwrap_or(0.0);
         let quantity = said.quantity.unwrap_or(Quantity::Brdf);
         let reading = |[psi_deg, theta_deg, reading]: [f64; 3]| {
             let (theta, phi) = convention.in_model(theta_deg, phi_deg);

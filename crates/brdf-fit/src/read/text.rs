@@ -330,6 +330,21 @@ impl Quantity {
     }
 }
 
+/// Whether a reading stays a finite number in every conversion.
+pub(super) fn is_reading(value: f64) -> bool {
+    value.abs() <= 1e290
+}
+
+/// Whether a standard deviation stays a finite number above 0 in every conversion.
+pub(super) fn is_deviation(value: f64) -> bool {
+    (1e-290..=1e290).contains(&value)
+}
+
+/// Whether this is an angle in degrees or radians, of however many turns.
+pub(super) fn is_angle(value: f64) -> bool {
+    value.abs() <= 1e9
+}
+
 /// Micrometres, from a number in nanometres; in the decimals of the file, so that 630.79 nm is
 /// 0.63079 um to the last digit.
 pub(super) fn micrometres(nanometres: &[u8]) -> Option<f64> {

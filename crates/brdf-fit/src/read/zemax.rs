@@ -429,7 +429,7 @@ impl Taken {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
+    use std::f64::consts::{FRAC_PI_2, TAU};
     use std::path::Path;
 
     use proptest::prelude::*;
@@ -578,7 +578,7 @@ mod tests {
         #[test]
         fn directions_agree_with_spherical_trigonometry(
             psi in 0.01..1.5_f64,
-            azimuth in 0.0..6.283_f64,
+            azimuth in 0.0..TAU,
             radial in 0.01..3.1_f64,
         ) {
             let (theta, phi) = from_specular(psi, azimuth, radial);
@@ -596,7 +596,7 @@ mod tests {
         #[test]
         fn radial_is_the_angle_from_the_specular_ray(
             psi in 0.0..FRAC_PI_2,
-            azimuth in 0.0..6.283_f64,
+            azimuth in 0.0..TAU,
             radial in 0.0..3.1_f64,
         ) {
             let (theta, phi) = from_specular(psi, azimuth, radial);

@@ -2,7 +2,7 @@
 
 use crate::measurement::Metadata;
 use crate::read::angles::AngleUnit;
-use crate::read::text::{self, Field, Quantity, Text, micrometres};
+use crate::read::text::{self, Field, Quantity, Text, is_angle, micrometres};
 use crate::read::{Convention, ReadError, ReadOptions, Side};
 use crate::refractive_index::RefractiveIndex;
 
@@ -82,7 +82,7 @@ impl Header {
         let field = Field::plain(value.as_bytes());
         match key.as_str() {
             "theta_i" | "phi_i" | "theta_s" | "phi_s" => {
-                let angle = text.number(line, &key, &field, "expected an angle", |_| true)?;
+                let angle = text.number(line, &key, &field, "expected an angle", is_angle)?;
                 let place = ANGLES.iter().position(|name| *name == key);
                 if let Some(given) = place.and_then(|place| self.given.get_mut(place)) {
                     *given = Some(angle);

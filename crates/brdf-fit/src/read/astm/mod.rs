@@ -76,6 +76,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::Measurement;
     use crate::read::Side;
 
     fn read_with(content: &str, options: &ReadOptions) -> Result<Measurements, ReadError> {
@@ -115,7 +116,11 @@ mod tests {
         let text = "ANGLE_UNIT deg\nWAVELENGTH 0.6328 um\nTHETA_I 30\nVARS theta_s phi_s BRDF sigma\n\
                     30 0 0.5 0.01\n-20 0 0.1 0.02\n40 180 0.2 0.01\n";
         let scan = scan(text);
-        let found: Vec<_> = scan.readings().iter().map(|r| r.in_plane_theta()).collect();
+        let found: Vec<_> = scan
+            .readings()
+            .iter()
+            .map(Measurement::in_plane_theta)
+            .collect();
         let expected = [-30.0, 20.0, 40.0].map(|deg| Some(deg * DEG));
         for (found, expected) in found.iter().zip(expected) {
             assert!(

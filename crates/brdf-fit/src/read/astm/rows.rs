@@ -3,7 +3,9 @@
 use super::header::{Column, Header};
 use crate::measurement::{Measurement, Measurements};
 use crate::read::angles::{AngleUnit, TwoDirections};
-use crate::read::text::{BEYOND_HORIZON, Field, Text, left_out, words};
+use crate::read::text::{
+    BEYOND_HORIZON, Field, Text, is_angle, is_deviation, is_reading, left_out, words,
+};
 use crate::read::{Convention, Format, ReadError, Side};
 
 /// The rows as they stand in the file.
@@ -36,18 +38,19 @@ impl Rows {
             let field = Field::plain(field);
             match column {
                 Column::Angle(place) => {
-                    let angle = text.number(number, name, &field, "expected an angle", |_| true)?;
+                    let angle = text.number(number, name, &field, "expected an angle", is_angle)?;
                     if let Some(slot) = angles.get_mut(*place) {
                         *slot = angle;
                     }
                 }
                 Column::Value(_) => {
-                    let value = text.number(number, name, &field, "expected a value", |_| true)?;
+                    let value =
+                        text.number(number, name, &field, "expected a value", is_reading)?;
                     self.values.push(value);
                 }
                 Column::Sigma => {
                     let expected = "expected 1/sr above 0";
-                    let sigma = text.number(number, name, &field, expected, |sigma| sigma > 0.0)?;
+                    let sigma = text.number(number, name, &field, expected, is_deviation)?;
                     self.sigmas.push(Some(sigma));
                 }
                 Column::Unused => {}

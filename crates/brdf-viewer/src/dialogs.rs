@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::thread;
 
+use brdf_fit::read::Format;
+
 use crate::intent::Export;
 use crate::job::Event;
 use crate::worker::Events;
@@ -30,7 +32,7 @@ impl Dialogs for Native {
         thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
                 .set_title("Open scans or fits")
-                .add_filter("Scans and fits", &["csv", "txt", "dat", "tsv", "json"])
+                .add_filter("Scans and fits", &extensions())
                 .add_filter("All files", &["*"]);
             // No answer is a dialog that was closed.
             if let Some(paths) = dialog.pick_files() {
@@ -53,6 +55,13 @@ impl Dialogs for Native {
             }
         });
     }
+}
+
+/// Those of scans in any format, of text without one of its own, and of fits.
+fn extensions() -> Vec<&'static str> {
+    let formats = Format::NAMED.into_iter();
+    let of_formats = formats.flat_map(|(format, _)| format.extensions().iter().copied());
+    of_formats.chain(["txt", "dat", "json"]).collect()
 }
 
 /// Whether there is a session bus, on which a desktop offers its dialogs.

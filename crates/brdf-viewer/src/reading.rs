@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use brdf_fit::Measurements;
-use brdf_fit::read::Convention;
-use brdf_fit::report::Document;
+use brdf_fit::read::{Convention, ReadOptions, Side};
+use brdf_fit::report::{Document, Report};
 
 use crate::job::Opened;
 use crate::state::built_in;
@@ -27,7 +27,7 @@ pub fn read(path: &Path, convention: Convention) -> Result<Vec<Opened>, String> 
     Ok(vec![Opened {
         source: path.display().to_string(),
         file: Some(path.to_owned()),
-        scans: read_scan(path, convention)?,
+        scans: read_scan(path, &chosen(convention))?,
     }])
 }
 
@@ -38,7 +38,7 @@ pub fn read_bytes(name: &str, bytes: &[u8], convention: Convention) -> Result<Op
     Ok(Opened {
         source: name.to_owned(),
         file: None,
-        scans: read_text(name, bytes, convention)?,
+        scans: read_content(name, bytes, &chosen(convention))?,
     })
 }
 
@@ -47,14 +47,33 @@ fn is_fit(path: &Path) -> bool {
         .is_some_and(|e| e.eq_ignore_ascii_case("json"))
 }
 
-fn read_scan(path: &Path, convention: Convention) -> Result<Vec<Scan>, String> {
-    Measurements::read_csv_with(path, convention)
+/// What the menu says of the sides: that they are the model's leaves them to the format of the file.
+fn chosen(convention: Convention) -> ReadOptions {
+    let other = |side: Side| (side != Side::default()).then_some(side);
+    ReadOptions {
+        format: None,
+        theta_positive: other(convention.theta_positive),
+        phi_zero: other(convention.phi_zero),
+    }
+}
+
+/// How the scan of a fit was read.
+fn as_before(report: &Report) -> ReadOptions {
+    ReadOptions {
+        format: Some(report.format),
+        theta_positive: Some(report.convention.theta_positive),
+        phi_zero: Some(report.convention.phi_zero),
+    }
+}
+
+fn read_scan(path: &Path, options: &ReadOptions) -> Result<Vec<Scan>, String> {
+    Measurements::read(path, options)
         .map(scans)
         .map_err(|error| error.to_string())
 }
 
-fn read_text(name: &str, bytes: &[u8], convention: Convention) -> Result<Vec<Scan>, String> {
-    Measurements::from_reader_with(bytes, name, convention)
+fn read_content(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Scan>, String> {
+    Measurements::from_bytes(name, bytes, options)
         .map(scans)
         .map_err(|error| error.to_string())
 }
@@ -67,15 +86,15 @@ fn scans(measurements: Measurements) -> Vec<Scan> {
 /// The scans that a document of fits is of, with these fits.
 fn read_fit(path: &Path) -> Result<Vec<Opened>, String> {
     let document = Document::read(path).map_err(|error| error.to_string())?;
-    let mut files: Vec<(&str, Convention)> = Vec::new();
+    let mut files: Vec<(&str, ReadOptions)> = Vec::new();
     for report in &document.reports {
-        let file = (report.file.as_str(), report.convention);
+        let file = (report.file.as_str(), as_before(report));
         if !files.contains(&file) {
             files.push(file);
         }
     }
-    let of_file = |(file, convention)| {
-        let (place, mut scans) = read_scan_of(path, file, convention)?;
+    let of_file = |(file, options): (&str, ReadOptions)| {
+        let (place, mut scans) = read_scan_of(path, file, &options)?;
         for scan in &mut scans {
             take_fit(scan, &document, file);
         }
@@ -104,7 +123,7 @@ fn take_fit(scan: &mut Scan, document: &Document, file: &str) {
 fn read_scan_of(
     fit: &Path,
     file: &str,
-    convention: Convention,
+    options: &ReadOptions,
 ) -> Result<(Option<PathBuf>, Vec<Scan>), String> {
     let beside = fit.parent().map(|folder| folder.join(file));
     let same_folder = fit
@@ -115,12 +134,12 @@ fn read_scan_of(
         .flatten()
     {
         if path.is_file() {
-            let scans = read_scan(&path, convention)?;
+            let scans = read_scan(&path, options)?;
             return Ok((Some(path), scans));
         }
     }
     match built_in::text_of(file) {
-        Some(text) => Ok((None, read_text(file, text.as_bytes(), convention)?)),
+        Some(text) => Ok((None, read_content(file, text.as_bytes(), options)?)),
         None => Err(format!(
             "{}: is a fit of {file}, which cannot be found: expected the scan where the fit names \
              it, or beside the fit",

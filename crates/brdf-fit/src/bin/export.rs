@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use brdf_fit::export::{Coating, ExportOptions, Target, export};
+use brdf_fit::export::{AngleGrid, Coating, ExportOptions, Target, export};
 use brdf_fit::output::{self, check_outputs, complain, write_file};
 use clap::Parser;
 
@@ -18,7 +18,7 @@ struct Arguments {
     #[arg(value_name = "FILE")]
     fits: PathBuf,
 
-    /// The form: json
+    /// The form: json (the model), astm or zemax (tables within --tolerance), csv (on --grid)
     #[arg(long, value_name = "FORMAT")]
     to: Target,
 
@@ -39,8 +39,18 @@ struct Arguments {
     name: String,
 
     /// The largest relative error of a table, interpolated between its entries
-    #[arg(long, value_name = "ERROR", default_value = "1e-3")]
+    #[arg(long, value_name = "ERROR", default_value = "1e-3", value_parser = tolerance)]
     tolerance: f64,
+
+    /// The angles of csv in degrees, such as "psi=10:70:20 theta=-85:85:1 phi=0,90": FROM:TO:STEP or
+    /// numbers between commas [default: psi=0:70:10 theta=-80:80:5 phi=0]
+    #[arg(
+        long,
+        value_name = "ANGLES",
+        default_value = "",
+        hide_default_value = true
+    )]
+    grid: AngleGrid,
 }
 
 fn main() -> ExitCode {
@@ -68,6 +78,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let options = ExportOptions {
         name: arguments.name.clone(),
         tolerance: arguments.tolerance,
+        grid: arguments.grid.clone(),
     };
     let mut bytes = Vec::new();
     export(&coating, arguments.to, &options, &mut bytes).map_err(|error| error.to_string())?;
@@ -89,5 +100,12 @@ impl Arguments {
             None => Ok(coating),
         });
         chosen.map_err(|error| error.to_string())
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number > 0.0 && number < 1.0 => Ok(number),
+        _ => Err("expected a number above 0 and below 1".to_owned()),
     }
 }

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use brdf_fit::energy::USUAL_LIMIT_DEG;
 use brdf_fit::model::{Held, Model};
 use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file, write_json};
-use brdf_fit::read::{Format, ReadError, ReadOptions, Scan, Side};
+use brdf_fit::read::{Convention, Format, ReadError, ReadOptions, Scan, Side};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
     write_models, write_parameters,
@@ -27,14 +27,14 @@ use rayon::prelude::*;
 /// Each wavelength of each file is fitted by itself: initial values, stage 1 over the incidences
 /// up to a limit, stage 2 over all, and a search over k1 that checks the result against the global
 /// optimum. A file is a table with the columns psi_deg, theta_deg and brdf_per_sr, and if need be
-/// wavelength_um, phi_deg, sigma_per_sr and n.
+/// wavelength_um, phi_deg, sigma_per_sr and n, or in another of the formats of --format.
 ///
 /// Exit status: 0 when every fit succeeded, 1 when a fit failed (the others are delivered), 2 for
 /// bad usage, unreadable input or output that cannot be written.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
 struct Arguments {
-    /// Scans, as text separated by commas, semicolons or tabs
+    /// Scans, in any of the formats of --format
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 
@@ -115,7 +115,9 @@ struct Arguments {
     #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
     g2: Option<AngleWeight>,
 
-    /// Format of the files, instead of what their content and their extension say: csv
+    /// Format of the files, instead of what their content and their extension say: csv, merl, astm
+    /// (E1392, E2387), zemax (tabular BSDF), black-lab, goniometer (incidences in columns, views in
+    /// rows)
     #[arg(long, value_name = "FORMAT")]
     format: Option<Format>,
 
@@ -295,9 +297,14 @@ impl Arguments {
         self.again.as_ref().map(Document::read).transpose()
     }
 
-    /// How the files are read: as the options say, else as those of the document were.
+    /// How the files are read: as the options say, else on the sides that those of the document
+    /// were told to be on.
     fn read_options(&self, document: Option<&Document>) -> ReadOptions {
-        let before = document.map(|document| document.reports[0].convention);
+        let told = document.map(|document| &document.reports[0]);
+        let told = told.filter(|report| matches!(report.format, Format::Csv | Format::Goniometer));
+        let before = told
+            .map(|report| report.convention)
+            .filter(|convention| *convention != Convention::default());
         ReadOptions {
             format: self.format,
             theta_positive: self.theta_positive.or(before.map(|b| b.theta_positive)),

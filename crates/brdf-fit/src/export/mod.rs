@@ -1,9 +1,15 @@
 //! A fitted BRDF in the forms that other programs take: source code, tables, scenes. One file a
 //! form.
 
+mod astm;
 mod coating;
+mod csv;
+mod domain;
 mod merl;
+mod table;
 mod target;
+mod zemax;
 
 pub use coating::{Coating, CoatingError, Fitted};
+pub use csv::AngleGrid;
 pub use target::{ExportError, ExportOptions, Target, export};

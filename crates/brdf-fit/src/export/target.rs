@@ -3,8 +3,12 @@
 use std::io::{self, Write};
 use std::str::FromStr;
 
+use brdf_core::GeometryError;
+
 use super::coating::{Coating, CoatingError};
-use super::merl;
+use super::csv::AngleGrid;
+use super::table::{MOST_ENTRIES, Unreachable};
+use super::{astm, csv, merl, zemax};
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,11 +17,23 @@ pub enum Target {
     Merl,
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
+    /// ASTM E1392 text in Cornell's layout, a table.
+    Astm,
+    /// Zemax tabular BSDF.
+    Zemax,
+    /// Our own table on a grid of angles.
+    Csv,
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 2] = [(Self::Merl, "merl"), (Self::Json, "json")];
+    pub const NAMED: [(Self, &str); 5] = [
+        (Self::Merl, "merl"),
+        (Self::Json, "json"),
+        (Self::Astm, "astm"),
+        (Self::Zemax, "zemax"),
+        (Self::Csv, "csv"),
+    ];
 }
 
 impl FromStr for Target {
@@ -39,6 +55,8 @@ pub struct ExportOptions {
     pub name: String,
     /// The largest error of a table: of f_r interpolated between its entries, relative.
     pub tolerance: f64,
+    /// The angles of our own table.
+    pub grid: AngleGrid,
 }
 
 /// Why a coating does not leave.
@@ -47,16 +65,39 @@ pub enum ExportError {
     /// The form has no room for it.
     #[error(transparent)]
     Coating(#[from] CoatingError),
+    /// No table of a size that is of use keeps to the tolerance.
+    #[error(
+        "a table within {tolerance:e} has more than {MOST_ENTRIES} entries: expected --tolerance \
+         {reachable:.1e} or more, about"
+    )]
+    Tolerance {
+        /// The tolerance that was asked for.
+        tolerance: f64,
+        /// About the smallest that can be kept to.
+        reachable: f64,
+    },
+    /// Angles outside the model's domain.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
     /// It cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
+}
+
+impl ExportError {
+    pub(super) fn tolerance(tolerance: f64, unreachable: &Unreachable) -> Self {
+        Self::Tolerance {
+            tolerance,
+            reachable: unreachable.reachable,
+        }
+    }
 }
 
 /// Writes a coating in a form.
 pub fn export(
     coating: &Coating,
     target: Target,
-    _options: &ExportOptions,
+    options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
     match target {
@@ -66,6 +107,9 @@ pub fn export(
             merl::write([0, 1, 2].map(fit), writer)?;
         }
         Target::Json => coating.write(writer)?,
+        Target::Astm => astm::write(coating, options.tolerance, writer)?,
+        Target::Zemax => zemax::write(coating.only()?, options.tolerance, writer)?,
+        Target::Csv => csv::write(coating, &options.grid, writer)?,
     }
     Ok(())
 }

@@ -25,18 +25,12 @@ use std::path::Path;
 
 use brdf_core::brdf::check_refractive_index;
 
-use super::{Convention, ReadError, Side, fields};
-use crate::measurement::{Measurement, Measurements, Metadata};
+use super::text::{
+    Field, Quantity, Said, Text, comment_of, is_deviation, is_reading, read_bytes, shown,
+};
+use super::{Convention, ReadError, fields};
+use crate::measurement::{Measurement, Measurements};
 use crate::refractive_index::RefractiveIndex;
-
-/// A longer line is not a line of readings.
-const MAX_LINE: usize = 65_536;
-
-/// A larger file is not a scan; the limit keeps an endless input from filling the memory.
-const MAX_FILE: u64 = 4 << 30;
-
-/// How much is read before the next look at the length of the lines.
-const CHUNK: u64 = 1 << 20;
 
 impl Measurements {
     /// Reads a file in the model's convention.
@@ -58,7 +52,7 @@ impl Measurements {
         };
         let file = File::open(path).map_err(io)?;
         let size = file.metadata().map_err(io)?.len();
-        read(file, size, path, convention)
+        from(file, size, path, convention)
     }
 
     /// Reads from anything that yields the text of such a file, in the model's convention.
@@ -73,83 +67,37 @@ impl Measurements {
         name: &str,
         convention: Convention,
     ) -> Result<Self, ReadError> {
-        read(reader, 0, Path::new(name), convention)
+        from(reader, 0, Path::new(name), convention)
     }
 }
 
-fn read(
+fn from(
     reader: impl Read,
     expected_size: u64,
     path: &Path,
     convention: Convention,
 ) -> Result<Measurements, ReadError> {
-    let bytes = read_bytes(reader, expected_size).map_err(|error| ReadError::Io {
+    let bytes = read_bytes(Vec::new(), reader, expected_size).map_err(|error| ReadError::Io {
         path: path.to_owned(),
         error,
     })?;
-    let input = Input {
-        path,
-        text: text_of(&bytes).map_err(|message| file_error(path, message))?,
-    };
+    read(Text::new(path, &bytes)?, convention)
+}
+
+pub(super) fn read(text: Text<'_>, convention: Convention) -> Result<Measurements, ReadError> {
+    let input = Input { text };
     let preamble = input.preamble()?;
     input.measurements(preamble, convention)
 }
 
-/// Everything, up to the point where it is clear that it is not a table.
-fn read_bytes(mut reader: impl Read, expected_size: u64) -> std::io::Result<Vec<u8>> {
-    let capacity = usize::try_from(expected_size.min(MAX_FILE)).unwrap_or(0);
-    let mut bytes = Vec::with_capacity(capacity + 1);
-    while (bytes.len() as u64) <= MAX_FILE {
-        if reader.by_ref().take(CHUNK).read_to_end(&mut bytes)? == 0 {
-            break;
-        }
-        let tail = &bytes[bytes.len().saturating_sub(MAX_LINE + 1)..];
-        if tail.len() > MAX_LINE && !tail.iter().any(|&byte| is_line_end(byte)) {
-            break;
-        }
-    }
-    Ok(bytes)
+/// Whether this is the line that names the columns.
+pub(super) fn is_header(line: &[u8]) -> bool {
+    names_the_columns(comment_of(line).unwrap_or(line))
 }
 
-fn is_line_end(byte: u8) -> bool {
-    byte == b'\n' || byte == b'\r'
-}
-
-/// The text without its byte order mark, or why it is none.
-fn text_of(bytes: &[u8]) -> Result<&[u8], &'static str> {
-    if bytes.len() as u64 > MAX_FILE {
-        return Err("is larger than 4 GiB: expected a table of readings");
-    }
-    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
-        return Err("is in UTF-16: expected plain text or UTF-8 (save it as \"CSV UTF-8\")");
-    }
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    // The end of a text file on old systems.
-    let text = text.strip_suffix(b"\x1a").unwrap_or(text);
-    let is_control = |byte: &u8| *byte < 32 && !b"\t\n\r\x0c".contains(byte);
-    if text.iter().take(8192).any(is_control) {
-        return Err("is binary data: expected a table of readings as text");
-    }
-    if text.iter().all(u8::is_ascii_whitespace) {
-        return Err(
-            "is empty: expected a header with psi_deg, theta_deg and brdf_per_sr, and readings",
-        );
-    }
-    Ok(text)
-}
-
-fn file_error(path: &Path, message: impl Into<String>) -> ReadError {
-    ReadError::File {
-        path: path.to_owned(),
-        message: message.into(),
-    }
-}
-
-/// The text of a file, and the file that errors are about.
-#[derive(Clone, Copy)]
+/// The text of a table.
 struct Input<'a> {
-    path: &'a Path,
-    text: &'a [u8],
+    text: Text<'a>,
 }
 
 /// What the comments and the header line say.
@@ -158,30 +106,6 @@ struct Preamble<'a> {
     header: Header<'a>,
     /// Lines after the header: as many readings at the most.
     lines_after: usize,
-}
-
-/// What the comments say.
-#[derive(Default)]
-struct Said {
-    metadata: Metadata,
-    quantity: Option<Quantity>,
-    refractive_index: Option<RefractiveIndex>,
-}
-
-impl Said {
-    /// Takes over the key and value of a comment, where it has them.
-    fn add(&mut self, comment: &str) -> Result<(), String> {
-        let Some((key, value)) = key_and_value(comment) else {
-            return Ok(());
-        };
-        match key.as_str() {
-            "quantity" => set_once(&mut self.quantity, Quantity::parse(&value), &key)?,
-            "refractive_index" => set_once(&mut self.refractive_index, value.parse(), &key)?,
-            _ => {}
-        }
-        self.metadata.0.push((key, value));
-        Ok(())
-    }
 }
 
 /// The line that names the columns.
@@ -203,56 +127,21 @@ impl<'a> Header<'a> {
     }
 }
 
-/// The quantity that the readings of a file are, by its header.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Quantity {
-    Brdf,
-    BrdfCos,
-    ReflectanceFactor,
-}
-
-impl Quantity {
-    fn parse(text: &str) -> Result<Self, String> {
-        match text {
-            "brdf" => Ok(Self::Brdf),
-            "brdf_cos" => Ok(Self::BrdfCos),
-            "reflectance_factor" => Ok(Self::ReflectanceFactor),
-            _ => Err(format!(
-                "\"{text}\" is not known: expected brdf, brdf_cos or reflectance_factor"
-            )),
-        }
-    }
-
-    /// f_r of a reading.
-    fn to_brdf(self, reading: f64, theta: f64) -> f64 {
-        match self {
-            Self::Brdf => reading,
-            Self::BrdfCos => reading / theta.cos(),
-            Self::ReflectanceFactor => reading / std::f64::consts::PI,
-        }
-    }
-}
-
 impl<'a> Input<'a> {
     /// Looks at each line once: its length, what the comments say, and which is the header.
     fn preamble(&self) -> Result<Preamble<'a>, ReadError> {
         let mut said = Said::default();
         let mut header = None;
         let mut lines_after = 0;
-        for (number, line) in self.lines() {
-            if line.len() > MAX_LINE {
-                let message = format!(
-                    "the line is longer than {MAX_LINE} bytes: expected a table of readings"
-                );
-                return Err(self.line_error(number, message));
-            }
+        for (number, line) in self.text.lines() {
+            self.text.check_length(number, line)?;
             match comment_of(line) {
                 Some(comment) if header.is_none() && names_the_columns(comment) => {
                     header = Some(Header::new(number, comment));
                 }
                 Some(comment) => said
                     .add(&String::from_utf8_lossy(comment))
-                    .map_err(|message| self.line_error(number, message))?,
+                    .map_err(|message| self.text.line_error(number, message))?,
                 None if header.is_some() => lines_after += 1,
                 None if line.trim_ascii().is_empty() || line.starts_with(b"sep=") => {}
                 None => header = Some(Header::new(number, line)),
@@ -260,36 +149,12 @@ impl<'a> Input<'a> {
         }
         let header = header.ok_or_else(|| {
             let message = "has no header: expected a line with psi_deg, theta_deg and brdf_per_sr";
-            file_error(self.path, message)
+            self.text.error(message)
         })?;
         Ok(Preamble {
             said,
             header,
             lines_after,
-        })
-    }
-
-    /// Number and text of each line; a line ends with LF, CR or CR LF.
-    fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + use<'a> {
-        let mut rest = self.text;
-        let mut number = 0;
-        std::iter::from_fn(move || {
-            if rest.is_empty() {
-                return None;
-            }
-            let end = rest
-                .iter()
-                .position(|&byte| is_line_end(byte))
-                .unwrap_or(rest.len());
-            let (line, behind) = rest.split_at(end);
-            let ending = if behind.starts_with(b"\r\n") {
-                2
-            } else {
-                behind.len().min(1)
-            };
-            rest = &behind[ending..];
-            number += 1;
-            Some((number, line))
         })
     }
 
@@ -307,11 +172,12 @@ impl<'a> Input<'a> {
         let columns = fields::split(header_line, separator, &mut fields)
             .map_err(str::to_owned)
             .and_then(|()| Columns::find(&fields))
-            .map_err(|message| self.line_error(header_number, message))?;
+            .map_err(|message| self.text.line_error(header_number, message))?;
         let quantity = preamble.said.quantity.unwrap_or(Quantity::Brdf);
         let mut readings = Vec::with_capacity(preamble.lines_after);
         let mut indices = IndexColumn::default();
         for (number, line) in self
+            .text
             .lines()
             .skip_while(|(number, _)| *number <= header_number)
         {
@@ -319,7 +185,7 @@ impl<'a> Input<'a> {
                 continue;
             }
             fields::split(line, separator, &mut fields)
-                .map_err(|message| self.line_error(number, message.to_owned()))?;
+                .map_err(|message| self.text.line_error(number, message.to_owned()))?;
             if fields.iter().all(|field| field.trim_ascii().is_empty()) {
                 continue;
             }
@@ -338,66 +204,27 @@ impl<'a> Input<'a> {
         }
         if readings.is_empty() {
             let message = "no readings follow the header".to_owned();
-            return Err(self.line_error(header_number, message));
+            return Err(self.text.line_error(header_number, message));
         }
         Ok(Measurements {
-            source: self.path.display().to_string(),
+            source: self.text.path.display().to_string(),
             metadata: preamble.said.metadata,
             refractive_index: indices
                 .refractive_index()
                 .or(preamble.said.refractive_index),
             ignored_columns: columns.ignored,
             convention,
+            conversions: quantity.conversion().into_iter().collect(),
             readings,
             ..Measurements::default()
         })
     }
-
-    fn line_error(&self, line: u64, message: String) -> ReadError {
-        ReadError::Line {
-            path: self.path.to_owned(),
-            line,
-            message,
-        }
-    }
-}
-
-/// The text of a comment line, also of one that a spreadsheet has put into quotes.
-fn comment_of(line: &[u8]) -> Option<&[u8]> {
-    line.strip_prefix(b"#")
-        .or_else(|| line.strip_prefix(b"\"#"))
 }
 
 /// Whether a comment is a header behind a `#`, as some programs write it.
 fn names_the_columns(comment: &[u8]) -> bool {
     let comment = String::from_utf8_lossy(comment).to_lowercase();
     [PSI, THETA, BRDF].iter().all(|name| comment.contains(name))
-}
-
-/// `key: value` of a comment; separators that a spreadsheet has put behind it are left out.
-fn key_and_value(comment: &str) -> Option<(String, String)> {
-    let (key, value) = comment.split_once([':', '='])?;
-    let key = key.trim().to_lowercase();
-    let value = value
-        .trim()
-        .trim_end_matches([',', ';', '\t', '"'])
-        .trim_end();
-    let is_word = !key.is_empty() && !key.contains(char::is_whitespace);
-    is_word.then(|| (key, value.to_owned()))
-}
-
-/// Takes over a value of the metadata that the readings depend on: a second one must be the same.
-fn set_once<T: PartialEq>(
-    slot: &mut Option<T>,
-    value: Result<T, String>,
-    key: &str,
-) -> Result<(), String> {
-    let value = value.map_err(|error| format!("{key}: {error}"))?;
-    if slot.as_ref().is_some_and(|before| *before != value) {
-        return Err(format!("{key} stands there twice, with different values"));
-    }
-    *slot = Some(value);
-    Ok(())
 }
 
 /// The separator between the known columns: that which makes the most of them, a comma of equals.
@@ -482,19 +309,6 @@ impl Columns {
     }
 }
 
-/// A field as it is quoted in an error: not too long, and printable.
-fn shown(field: &[u8]) -> String {
-    const LONGEST: usize = 60;
-    let text = String::from_utf8_lossy(field)
-        .trim()
-        .escape_debug()
-        .to_string();
-    if text.chars().count() <= LONGEST {
-        return text;
-    }
-    text.chars().take(LONGEST).chain("...".chars()).collect()
-}
-
 /// One line of readings.
 struct Row<'a> {
     input: &'a Input<'a>,
@@ -513,7 +327,7 @@ impl Row<'_> {
         if surplus {
             let found = self.fields.len();
             let message = format!("{found} fields: expected {expected}, as in the header");
-            return Err(self.input.line_error(self.line, message));
+            return Err(self.input.text.line_error(self.line, message));
         }
         Ok(())
     }
@@ -549,22 +363,12 @@ impl Row<'_> {
             |x| x.abs() < 90.0,
         )?;
         let phi_deg = optional(columns.phi, PHI, "expected degrees", |_| true)?.unwrap_or(0.0);
-        let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", |_| true)?;
+        let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", is_reading)?;
         // A reading may have no standard deviation although others have one.
         let sigma = columns.sigma.filter(|&column| !self.is_blank(column));
-        let sigma = optional(sigma, SIGMA, "expected 1/sr above 0", positive)?;
+        let sigma = optional(sigma, SIGMA, "expected 1/sr above 0", is_deviation)?;
 
-        let theta = match convention.theta_positive {
-            Side::Source => theta_deg,
-            Side::Forward => -theta_deg,
-        }
-        .to_radians();
-        // In degrees, so that 180 deg remains what it is.
-        let phi = match convention.phi_zero {
-            Side::Source => phi_deg,
-            Side::Forward => phi_deg + 180.0,
-        }
-        .to_radians();
+        let (theta, phi) = convention.in_model(theta_deg, phi_deg);
         Ok(Measurement {
             wavelength_um,
             psi: psi_deg.to_radians(),
@@ -585,38 +389,17 @@ impl Row<'_> {
     fn value(
         &self,
         column: usize,
-        name: &'static str,
+        name: &str,
         expected: &str,
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
-        let field = self.fields.get(column).copied().unwrap_or_default();
-        let problem = match parse_number(field, self.decimal_comma) {
-            Some(value) if !value.is_finite() => "is not a finite number",
-            Some(value) if accepts(value) => return Ok(value),
-            Some(_) => "is out of range",
-            None if field.trim_ascii().is_empty() => "is missing",
-            None => "is not a number",
+        let field = Field {
+            text: self.fields.get(column).copied().unwrap_or_default(),
+            decimal_comma: self.decimal_comma,
         };
-        Err(ReadError::Value {
-            path: self.input.path.to_owned(),
-            line: self.line,
-            column: name,
-            value: shown(field),
-            message: format!("{problem}: {expected}"),
-        })
-    }
-}
-
-fn parse_number(field: &[u8], decimal_comma: bool) -> Option<f64> {
-    let field = field.trim_ascii();
-    match fast_float2::parse(field) {
-        Err(_) if decimal_comma && !field.contains(&b'.') => {
-            let comma = field.iter().position(|&byte| byte == b',')?;
-            let mut with_point = field.to_vec();
-            with_point[comma] = b'.';
-            fast_float2::parse(with_point).ok()
-        }
-        result => result.ok(),
+        self.input
+            .text
+            .number(self.line, name, &field, expected, accepts)
     }
 }
 
@@ -646,13 +429,11 @@ impl IndexColumn {
             return Ok(());
         }
         let message = format!("differs from {before}, given before at the same wavelength");
-        Err(ReadError::Value {
-            path: row.input.path.to_owned(),
-            line: row.line,
-            column: INDEX,
-            value: n.to_string(),
-            message,
-        })
+        let value = n.to_string();
+        Err(row
+            .input
+            .text
+            .value_error(row.line, INDEX, value.as_bytes(), message))
     }
 
     fn refractive_index(&self) -> Option<RefractiveIndex> {
@@ -670,6 +451,7 @@ impl IndexColumn {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::read::Side;
 
     fn scan(text: &str) -> Measurements {
         Measurements::from_reader(text.as_bytes()).unwrap()

@@ -29,7 +29,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-use super::{Format, ReadError};
+use super::{Convention, Format, ReadError, ReadOptions, text};
 use crate::measurement::{Measurement, Measurements};
 use crate::words::counted;
 
@@ -191,17 +191,42 @@ impl Bins {
 
 /// The channels of a table one after the other, in ascending order of wavelength, of each as many
 /// readings as are wanted.
+///
+/// Errors: options that choose sides.
 pub(super) fn channels(
     mut table: Table<impl Read + Seek>,
-    sample: Option<usize>,
-) -> impl Iterator<Item = Result<Measurements, ReadError>> {
-    Channel::ALL.into_iter().rev().map(move |channel| {
+    options: &ReadOptions,
+) -> Result<impl Iterator<Item = Result<Measurements, ReadError>>, ReadError> {
+    table.check(options)?;
+    let sample = options.sample;
+    Ok(Channel::ALL.into_iter().rev().map(move |channel| {
         let all = table.channel(channel)?;
         Ok(match sample {
             Some(count) => all.sampled(count),
             None => all,
         })
-    })
+    }))
+}
+
+/// The readings of all channels together.
+pub(super) fn read(
+    table: Table<impl Read + Seek>,
+    options: &ReadOptions,
+) -> Result<Measurements, ReadError> {
+    let mut together = Measurements::default();
+    for channel in channels(table, options)? {
+        let channel = channel?;
+        let mut readings = std::mem::take(&mut together.readings);
+        let mut conversions = std::mem::take(&mut together.conversions);
+        readings.extend_from_slice(&channel.readings);
+        conversions.extend_from_slice(&channel.conversions);
+        together = Measurements {
+            conversions,
+            readings,
+            ..channel
+        };
+    }
+    Ok(together)
 }
 
 /// The bin of a position from 0 to 1.
@@ -215,8 +240,11 @@ fn place(position: f64, bins: usize) -> usize {
     bin.min(bins - 1)
 }
 
-/// Whether a path leads to a table: see [`recognises`].
-pub(super) fn is_table(path: &Path) -> bool {
+/// Whether a file is read as a table: because the options say so, or its content, or its name.
+pub(super) fn is_table(path: &Path, options: &ReadOptions) -> bool {
+    if let Some(format) = options.format {
+        return format == Format::Merl;
+    }
     let start = File::open(path).and_then(|mut file| {
         let mut start = [0; HEADER];
         file.read_exact(&mut start)?;
@@ -291,6 +319,14 @@ impl<R: Read + Seek> Table<R> {
         let bins = checked_bins(&header, size).map_err(|message| file_error(name, message))?;
         let name = name.to_owned();
         Ok(Self { name, reader, bins })
+    }
+
+    /// Checks that no option chooses sides.
+    pub(super) fn check(&self, options: &ReadOptions) -> Result<(), ReadError> {
+        let why = "a MERL table has angles about the half vector";
+        options
+            .fixed(Path::new(&self.name), Convention::default(), why)
+            .map(|_| ())
     }
 
     /// The readings of a channel: the bins that were measured, with both directions above the
@@ -496,10 +532,7 @@ fn io_error(name: &str, error: io::Error) -> ReadError {
 }
 
 fn file_error(name: &str, message: impl Into<String>) -> ReadError {
-    ReadError::File {
-        path: name.into(),
-        message: message.into(),
-    }
+    text::file_error(Path::new(name), message)
 }
 
 #[cfg(test)]

@@ -1,13 +1,23 @@
-//! Readers, one file a format.
+//! Readers, one file a format. Each converts once to the model's convention, and says so in
+//! [`Measurements::conversions`].
 
+mod angles;
+pub mod astm;
+pub mod black_lab;
 pub mod csv;
+mod detect;
 mod fields;
+pub mod goniometer;
 pub mod merl;
 mod scan;
+mod text;
+pub mod zemax;
 
 pub use scan::Scan;
 
 use std::fmt;
+use std::fs::File;
+use std::io::{Cursor, Read as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -24,16 +34,35 @@ pub enum Format {
     Csv,
     /// A MERL table: [`merl`].
     Merl,
+    /// ASTM E1392 and E2387 text, also as Cornell wrote it: [`astm`].
+    Astm,
+    /// Zemax tabular BSDF: [`zemax`].
+    Zemax,
+    /// Reflectance factors of the Black Lab: [`black_lab`].
+    BlackLab,
+    /// Incidences in columns, views in rows: [`goniometer`].
+    Goniometer,
 }
 
 impl Format {
     /// All formats, with the names that options and files give them.
-    pub const NAMED: [(Self, &str); 2] = [(Self::Csv, "csv"), (Self::Merl, "merl")];
+    pub const NAMED: [(Self, &str); 6] = [
+        (Self::Merl, "merl"),
+        (Self::Csv, "csv"),
+        (Self::Astm, "astm"),
+        (Self::Zemax, "zemax"),
+        (Self::BlackLab, "black-lab"),
+        (Self::Goniometer, "goniometer"),
+    ];
 
     /// The name that options and files give it.
     pub fn name(self) -> &'static str {
         let found = Self::NAMED.iter().find(|(format, _)| *format == self);
         found.map_or("", |(_, name)| name)
+    }
+
+    fn names() -> String {
+        Self::NAMED.map(|(_, name)| name).join(", ")
     }
 }
 
@@ -43,7 +72,7 @@ impl FromStr for Format {
     fn from_str(text: &str) -> Result<Self, String> {
         let found = Self::NAMED.iter().find(|(_, name)| *name == text);
         found.map(|(format, _)| *format).ok_or_else(|| {
-            let names = Self::NAMED.map(|(_, name)| name).join(", ");
+            let names = Self::names();
             format!("\"{text}\" is not a format: expected one of {names}")
         })
     }
@@ -73,16 +102,21 @@ impl ReadOptions {
     }
 }
 
-impl Format {
-    /// The format in which a file is read.
-    pub(crate) fn of_file(path: &Path, options: &ReadOptions) -> Self {
-        options.format.unwrap_or_else(|| {
-            if merl::is_table(path) {
-                Self::Merl
-            } else {
-                Self::Csv
-            }
-        })
+impl ReadOptions {
+    /// The convention of a file whose format leaves no choice.
+    ///
+    /// Errors: an option says that it is another, and `why` it cannot be.
+    fn fixed(
+        &self,
+        path: &Path,
+        of_format: Convention,
+        why: &str,
+    ) -> Result<Convention, ReadError> {
+        if self.convention(of_format) == of_format {
+            return Ok(of_format);
+        }
+        let message = format!("its sides cannot be chosen: {why}");
+        Err(text::file_error(path, message))
     }
 }
 
@@ -90,37 +124,66 @@ impl Measurements {
     /// Reads a file of any [`Format`].
     ///
     /// All readings of a MERL table take 210 MB; [`Scan::of_file`] reads one channel at a time.
+    ///
+    /// Errors name the file, and where they can the line, the column and the value, and say what
+    /// was expected.
     pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, ReadError> {
         let path = path.as_ref();
-        let all = match Format::of_file(path, options) {
-            Format::Csv => Self::read_csv_with(path, options.convention(Convention::default()))?,
-            Format::Merl => {
-                let channels = merl::channels(merl::Table::open(path)?, options.sample);
-                return Self::together(channels);
-            }
+        if merl::is_table(path, options) {
+            return merl::read(merl::Table::open(path)?, options);
+        }
+        let io = |error| ReadError::Io {
+            path: path.to_owned(),
+            error,
         };
-        Ok(match options.sample {
-            Some(count) => all.sampled(count),
-            None => all,
-        })
+        let mut file = File::open(path).map_err(io)?;
+        let size = file.metadata().map_err(io)?.len();
+        let mut head = Vec::new();
+        let mut beginning = file.by_ref().take(detect::HEAD);
+        beginning.read_to_end(&mut head).map_err(io)?;
+        let bytes = text::read_bytes(head, file, size).map_err(io)?;
+        of_bytes(path, &bytes, options)
     }
 
-    /// The readings of several wavelengths of one file.
-    fn together(scans: impl Iterator<Item = Result<Self, ReadError>>) -> Result<Self, ReadError> {
-        let mut together = Self::default();
-        for scan in scans {
-            let scan = scan?;
-            let mut readings = std::mem::take(&mut together.readings);
-            let mut conversions = std::mem::take(&mut together.conversions);
-            readings.extend_from_slice(&scan.readings);
-            conversions.extend_from_slice(&scan.conversions);
-            together = Self {
-                conversions,
-                readings,
-                ..scan
-            };
-        }
-        Ok(together)
+    /// Reads what is in a file of any [`Format`]; `name` stands for the file in errors and reports,
+    /// and its extension for that of the file.
+    ///
+    /// Errors as those of [`read`](Self::read).
+    pub fn from_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, ReadError> {
+        of_bytes(Path::new(name), bytes, options)
+    }
+}
+
+fn of_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
+    let found = options.format.or_else(|| Format::detect(bytes, path));
+    let format = found.unwrap_or_default();
+    if format == Format::Merl {
+        let name = path.display().to_string();
+        return merl::read(merl::Table::new(Cursor::new(bytes), &name)?, options);
+    }
+    let all = of_text(format, path, bytes, options).map_err(|error| match found {
+        Some(_) => error,
+        None => error.with_known_formats(),
+    })?;
+    Ok(match options.sample {
+        Some(count) => all.sampled(count),
+        None => all,
+    })
+}
+
+fn of_text(
+    format: Format,
+    path: &Path,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<Measurements, ReadError> {
+    let text = text::Text::new(path, bytes)?;
+    match format {
+        Format::Csv | Format::Merl => csv::read(text, options.convention(Convention::default())),
+        Format::Astm => astm::read(text, options),
+        Format::Zemax => zemax::read(text, options),
+        Format::BlackLab => black_lab::read(text, options),
+        Format::Goniometer => goniometer::read(text, options.convention(Convention::default())),
     }
 }
 
@@ -154,6 +217,22 @@ pub struct Convention {
     pub theta_positive: Side,
     /// The side on which phi is zero.
     pub phi_zero: Side,
+}
+
+impl Convention {
+    /// Theta and phi in radians in the model's convention, from degrees in this one.
+    fn in_model(self, theta_deg: f64, phi_deg: f64) -> (f64, f64) {
+        let theta = match self.theta_positive {
+            Side::Source => theta_deg,
+            Side::Forward => -theta_deg,
+        };
+        // In degrees, so that 180 deg remains what it is.
+        let phi = match self.phi_zero {
+            Side::Source => phi_deg,
+            Side::Forward => phi_deg + 180.0,
+        };
+        (theta.to_radians(), phi.to_radians())
+    }
 }
 
 /// What differs from the model's convention, in words; nothing where it is that.
@@ -205,10 +284,21 @@ pub enum ReadError {
         /// The line, from 1.
         line: u64,
         /// The name of the column.
-        column: &'static str,
+        column: String,
         /// What stands there.
         value: String,
         /// What was expected.
         message: String,
     },
+}
+
+impl ReadError {
+    /// The same of a file that may be of a format that is not known.
+    fn with_known_formats(mut self) -> Self {
+        if let Self::File { message, .. } | Self::Line { message, .. } = &mut self {
+            let names = Format::names();
+            *message = format!("{message}; known formats are {names}");
+        }
+        self
+    }
 }

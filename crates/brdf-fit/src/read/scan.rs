@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::merl::{self, Channel, Table};
-use super::{Format, ReadError, ReadOptions};
+use super::{ReadError, ReadOptions};
 use crate::measurement::Measurements;
 
 /// The readings of one wavelength of a file.
@@ -29,15 +29,16 @@ impl Scan {
     /// is wrong with its header alone.
     pub fn of_file(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Vec<Self>, ReadError> {
         let path = path.as_ref();
-        if Format::of_file(path, options) != Format::Merl {
+        if !merl::is_table(path, options) {
             let scans = Measurements::read(path, options)?.by_wavelength();
             return Ok(scans.into_iter().map(Self::Read).collect());
         }
         let table = Table::open(path)?;
         if options.sample.is_some() {
-            let channels = merl::channels(table, options.sample);
+            let channels = merl::channels(table, options)?;
             return channels.map(|channel| Ok(Self::Read(channel?))).collect();
         }
+        table.check(options)?;
         let channels = Channel::ALL.into_iter().rev();
         let scan = |channel| Self::Channel {
             path: path.to_owned(),

@@ -325,6 +325,7 @@ mod tests {
     fn of_a_table_there_are_samples() {
         let mut table = crate::synthetic::scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
         table.incidence_class = Some(0.1);
+        table.readings.extend(table.readings.clone());
         let trials = trials(&table, &FitOptions::default(), 1.5);
         let found = trials
             .iter()

@@ -1,0 +1,198 @@
+//! ASTM E1392 text in Cornell's layout, read again by [`crate::read::astm`], which describes the
+//! format: angles in radians, phi_i = 0, a column for each wavelength.
+//!
+//! Values between the entries are meant to be interpolated linearly in theta_i, theta_s and phi_s,
+//! as libbsdf does. The angles form a grid; phi_s goes from 0, the source's side, to pi, the other half
+//! is its mirror image.
+
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+use brdf_core::AnyBrdf;
+
+use super::coating::{Coating, Fitted};
+use super::domain::{LIMIT_DEG, from_narrow, spread, value, write_comments};
+use super::table::{At, Table, Tabulated};
+use super::target::ExportError;
+
+/// Writes all fits of the coating, or the only one where it has no wavelength.
+///
+/// Errors: several fits, of which one has no wavelength; the tolerance cannot be kept to.
+pub(super) fn write(
+    coating: &Coating,
+    tolerance: f64,
+    writer: &mut dyn Write,
+) -> Result<(), ExportError> {
+    if coating.fits.iter().any(|fit| fit.wavelength_um.is_none()) {
+        coating.only()?;
+    }
+    let function = BySphericalAngles {
+        brdfs: coating.fits.iter().map(|fit| fit.brdf).collect(),
+    };
+    let table = Table::within(&function, tolerance)
+        .map_err(|error| ExportError::tolerance(tolerance, &error))?;
+    write_header(&coating.fits, tolerance, &table, writer)?;
+    let [theta_i, theta_s, phi_s] = &table.axes;
+    for (i, theta_i) in theta_i.iter().enumerate() {
+        for (j, theta_s) in theta_s.iter().enumerate() {
+            for (k, phi_s) in phi_s.iter().enumerate() {
+                write!(writer, "{theta_i},0,{theta_s},{phi_s}")?;
+                for channel in 0..coating.fits.len() {
+                    write!(writer, ",{:e}", table.value([i, j, k], channel))?;
+                }
+                writeln!(writer)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_header(
+    fits: &[Fitted],
+    tolerance: f64,
+    table: &Table,
+    writer: &mut dyn Write,
+) -> io::Result<()> {
+    write_comments(fits, tolerance, table, writer)?;
+    writeln!(
+        writer,
+        "# interpolation: linear in theta_i, theta_s and phi_s"
+    )?;
+    let points: usize = table.axes.iter().map(Vec::len).product();
+    writeln!(
+        writer,
+        "ANGLE_UNIT rad\nMEAS_NAME BRDF\nNUM_POINTS {points}"
+    )?;
+    let columns: Vec<String> = fits.iter().map(column).collect();
+    writeln!(
+        writer,
+        "VARS theta_i,phi_i,theta_s,phi_s,{}",
+        columns.join(",")
+    )
+}
+
+/// In nanometres, in the decimals of the micrometres.
+fn column(fit: &Fitted) -> String {
+    let Some(um) = fit.wavelength_um else {
+        return "BRDF".to_owned();
+    };
+    let nm = format!("{um}e3").parse().unwrap_or(um * 1e3);
+    let nm: f64 = nm;
+    format!("{nm}nm")
+}
+
+/// f_r of each fit by theta_i, theta_s and phi_s, in radians.
+struct BySphericalAngles {
+    brdfs: Vec<AnyBrdf>,
+}
+
+impl Tabulated for BySphericalAngles {
+    fn channels(&self) -> usize {
+        self.brdfs.len()
+    }
+
+    fn ranges(&self) -> [(f64, f64); 3] {
+        let limit = LIMIT_DEG.to_radians();
+        [(0.0, limit), (0.0, limit), (0.0, PI)]
+    }
+
+    fn value(&self, channel: usize, [theta_i, theta_s, phi_s]: At) -> f64 {
+        value(&self.brdfs[channel], theta_i, theta_s, phi_s)
+    }
+
+    fn is_inside(&self, _: At) -> bool {
+        true
+    }
+
+    fn samples(&self) -> [Vec<f64>; 3] {
+        let thetas = spread(0.0, LIMIT_DEG.to_radians(), 18);
+        let forward = from_narrow(PI).into_iter().map(|phi| PI - phi);
+        [thetas.clone(), thetas, forward.collect()]
+    }
+
+    /// Near the specular direction.
+    fn narrow(&self, axis: usize, angle: f64) -> Vec<At> {
+        let [thetas, _, phis] = self.samples();
+        match axis {
+            0 | 1 => phis.into_iter().map(|phi| [angle, angle, phi]).collect(),
+            _ => thetas
+                .into_iter()
+                .map(|theta| [theta, theta, angle])
+                .collect(),
+        }
+    }
+
+    fn rounded(&self, angle: f64) -> f64 {
+        (angle * 1e6).round() / 1e6
+    }
+
+    fn is_defined(&self, _: At) -> bool {
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::{Parameters, ThreeParameterBrdf};
+
+    use super::*;
+    use crate::Measurements;
+    use crate::read::{Format, ReadOptions};
+
+    fn fitted(wavelength_um: Option<f64>, k1: f64) -> Fitted {
+        let parameters = Parameters::new(0.225, 0.246, k1).unwrap();
+        Fitted {
+            file: "paint.csv".to_owned(),
+            wavelength_um,
+            brdf: ThreeParameterBrdf::new(parameters, 1.62).unwrap().into(),
+            e_percent: 4.02,
+            psi_max_deg: 70.0,
+        }
+    }
+
+    fn written(fits: Vec<Fitted>) -> Measurements {
+        let mut bytes = Vec::new();
+        write(&Coating { fits }, 3e-2, &mut bytes).unwrap();
+        Measurements::from_bytes("a", &bytes, &ReadOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_to_the_last_digit() {
+        let fits = vec![fitted(Some(0.630_79), 0.9), fitted(Some(0.852_23), 0.8)];
+        let scan = written(fits.clone());
+        assert_eq!(scan.format, Format::Astm);
+        assert_eq!(scan.wavelengths(), [Some(0.630_79), Some(0.852_23)]);
+        assert!(scan.readings().len() > 1000);
+        for reading in scan.readings() {
+            let fit = fits
+                .iter()
+                .find(|fit| fit.wavelength_um == reading.wavelength_um);
+            let exact = fit.unwrap().brdf.value(&reading.geometry().unwrap());
+            assert_eq!(reading.brdf, exact);
+        }
+        assert_eq!(
+            scan.refractive_index.unwrap().at(Some(0.630_79)),
+            Some(1.62)
+        );
+    }
+
+    #[test]
+    fn a_fit_without_a_wavelength_is_a_brdf() {
+        let scan = written(vec![fitted(None, 0.9)]);
+        assert_eq!(scan.wavelengths(), [None]);
+        let two = Coating {
+            fits: vec![fitted(None, 0.9), fitted(Some(0.6), 0.9)],
+        };
+        let error = write(&two, 3e-2, &mut Vec::new()).unwrap_err().to_string();
+        assert!(error.contains("there are several fits"), "{error}");
+    }
+
+    #[test]
+    fn the_lobe_stands_where_the_readers_of_others_expect_it() {
+        let scan = written(vec![fitted(None, 0.3)]);
+        let largest = |a: &&crate::Measurement, b: &&crate::Measurement| a.brdf.total_cmp(&b.brdf);
+        let near = |r: &&crate::Measurement| (r.psi - 0.5).abs() < 0.1;
+        let lobe = scan.readings().iter().filter(near).max_by(largest).unwrap();
+        assert_eq!(lobe.phi, PI);
+    }
+}

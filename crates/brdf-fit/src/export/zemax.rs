@@ -1,0 +1,218 @@
+//! Zemax tabular BSDF: a table about the specular ray, read again by [`crate::read::zemax`], which
+//! describes the format.
+//!
+//! Values between the entries are meant to be interpolated linearly in the incidence, the azimuth
+//! and the radial angle, as libbsdf does with such files; OpticStudio does not say how it does. The
+//! incidence goes up to 85 deg, the view everywhere, and the tolerance holds up to 85 deg of view.
+//! Below the surface the table goes on as far as the interpolation above it needs, with the value at
+//! the horizon; further down it is 0.
+
+use std::io::{self, Write};
+
+use brdf_core::AnyBrdf;
+
+use super::coating::Fitted;
+use super::domain::{LIMIT_DEG, from_narrow, spread, value};
+use super::table::{At, Table, Tabulated};
+use super::target::ExportError;
+use crate::read::zemax::from_specular;
+
+/// Writes the fit as a plane-symmetrical BRDF.
+///
+/// Errors: the tolerance cannot be kept to.
+pub(super) fn write(
+    fitted: &Fitted,
+    tolerance: f64,
+    writer: &mut dyn Write,
+) -> Result<(), ExportError> {
+    let function = AboutSpecular { brdf: fitted.brdf };
+    let table = Table::within(&function, tolerance)
+        .map_err(|error| ExportError::tolerance(tolerance, &error))?;
+    write_header(fitted, tolerance, &table, writer)?;
+    let [incidences, azimuths, _] = &table.axes;
+    for (i, psi_deg) in incidences.iter().enumerate() {
+        let psi = psi_deg.to_radians();
+        let tis = fitted.brdf.hemispherical_reflectance(psi, 1e-6);
+        writeln!(writer, "TIS\t{:e}", tis.map_err(ExportError::Geometry)?)?;
+        for j in 0..azimuths.len() {
+            write_row(&table, i, j, writer)?;
+        }
+    }
+    writeln!(writer, "DataEnd")?;
+    Ok(())
+}
+
+fn write_row(table: &Table, i: usize, j: usize, writer: &mut dyn Write) -> io::Result<()> {
+    for k in 0..table.axes[2].len() {
+        let tab = if k == 0 { "" } else { "\t" };
+        write!(writer, "{tab}{:e}", table.value([i, j, k], 0))?;
+    }
+    writeln!(writer)
+}
+
+fn write_header(
+    fitted: &Fitted,
+    tolerance: f64,
+    table: &Table,
+    writer: &mut dyn Write,
+) -> io::Result<()> {
+    super::domain::write_comments(std::slice::from_ref(fitted), tolerance, table, writer)?;
+    if let Some(wavelength_um) = fitted.wavelength_um {
+        writeln!(writer, "# wavelength_um: {wavelength_um}")?;
+    }
+    writeln!(
+        writer,
+        "# interpolation: linear in incidence, azimuth and radial angle"
+    )?;
+    writeln!(writer, "Source\tMeasured\nSymmetry\tPlaneSymmetrical")?;
+    writeln!(
+        writer,
+        "SpectralContent\tMonochrome\nScatterType\tBRDF\nSampleRotation\t1\n0"
+    )?;
+    for (name, angles) in ["AngleOfIncidence", "ScatterAzimuth", "ScatterRadial"]
+        .iter()
+        .zip(&table.axes)
+    {
+        let list: Vec<String> = angles.iter().map(f64::to_string).collect();
+        writeln!(writer, "{name}\t{}\n{}", angles.len(), list.join("\t"))?;
+    }
+    writeln!(writer, "\nMonochrome\nDataBegin")
+}
+
+/// f_r by incidence, azimuth and radial angle about the specular ray, in degrees.
+struct AboutSpecular {
+    brdf: AnyBrdf,
+}
+
+impl AboutSpecular {
+    /// The view zenith angle in radians, which may be below the surface, and the azimuth.
+    fn view([psi_deg, azimuth_deg, radial_deg]: At) -> (f64, f64) {
+        from_specular(
+            psi_deg.to_radians(),
+            azimuth_deg.to_radians(),
+            radial_deg.to_radians(),
+        )
+    }
+}
+
+impl Tabulated for AboutSpecular {
+    fn channels(&self) -> usize {
+        1
+    }
+
+    fn ranges(&self) -> [(f64, f64); 3] {
+        [(0.0, LIMIT_DEG), (0.0, 180.0), (0.0, 2.0 * LIMIT_DEG)]
+    }
+
+    fn value(&self, _: usize, at: At) -> f64 {
+        let (theta, phi) = Self::view(at);
+        value(&self.brdf, at[0].to_radians(), theta, phi)
+    }
+
+    fn is_inside(&self, at: At) -> bool {
+        let limit = LIMIT_DEG.to_radians();
+        at[0] <= LIMIT_DEG && Self::view(at).0 <= limit
+    }
+
+    fn samples(&self) -> [Vec<f64>; 3] {
+        [
+            spread(0.0, LIMIT_DEG, 18),
+            spread(0.0, 180.0, 19),
+            from_narrow(2.0 * LIMIT_DEG),
+        ]
+    }
+
+    fn narrow(&self, _: usize, _: f64) -> Vec<At> {
+        Vec::new()
+    }
+
+    fn rounded(&self, angle: f64) -> f64 {
+        super::domain::rounded_deg(angle)
+    }
+
+    fn is_defined(&self, at: At) -> bool {
+        Self::view(at).0 < std::f64::consts::FRAC_PI_2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::{Parameters, ThreeParameterBrdf};
+
+    use super::*;
+    use crate::Measurements;
+    use crate::read::{Format, ReadOptions};
+
+    fn fitted() -> Fitted {
+        let parameters = Parameters::new(0.225, 0.246, 0.9).unwrap();
+        Fitted {
+            file: "paint.csv".to_owned(),
+            wavelength_um: Some(0.62),
+            brdf: ThreeParameterBrdf::new(parameters, 1.62).unwrap().into(),
+            e_percent: 4.02,
+            psi_max_deg: 70.0,
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_again_to_the_last_digit() {
+        let mut bytes = Vec::new();
+        write(&fitted(), 2e-2, &mut bytes).unwrap();
+        let scan = Measurements::from_bytes("a", &bytes, &ReadOptions::default()).unwrap();
+        assert_eq!(scan.format, Format::Zemax);
+        assert_eq!(scan.wavelengths(), [Some(0.62)]);
+        assert_eq!(
+            scan.refractive_index.as_ref().unwrap().at(Some(0.62)),
+            Some(1.62)
+        );
+        assert!(scan.readings().len() > 1000);
+        for reading in scan.readings() {
+            let exact = fitted().brdf.value(&reading.geometry().unwrap());
+            assert_eq!(reading.brdf, exact);
+        }
+    }
+
+    #[test]
+    fn the_comments_state_the_tolerance_the_domain_and_the_error() {
+        let mut bytes = Vec::new();
+        write(&fitted(), 2e-2, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert!(text.contains("# tolerance: 0.02 "), "{}", &text[..900]);
+        assert!(
+            text.contains("# domain: incidence and view up to 85 deg"),
+            "{}",
+            &text[..900]
+        );
+        let error = text
+            .lines()
+            .find_map(|line| line.strip_prefix("# largest_error: "))
+            .unwrap();
+        let error: f64 = error.split(' ').next().unwrap().parse().unwrap();
+        assert!(error > 2e-3 && error <= 2e-2, "{error}");
+    }
+
+    #[test]
+    fn total_scatter_is_the_hemispherical_reflectance() {
+        let mut bytes = Vec::new();
+        write(&fitted(), 2e-2, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let tis = text
+            .lines()
+            .find_map(|line| line.strip_prefix("TIS\t"))
+            .unwrap();
+        let tis: f64 = tis.parse().unwrap();
+        // spec: 0.54 at normal incidence.
+        assert!((tis - 0.54).abs() < 0.005, "{tis}");
+    }
+
+    #[test]
+    fn a_tolerance_that_cannot_be_kept_to_says_which_can() {
+        let message = write(&fitted(), 1e-9, &mut Vec::new())
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.contains("more than 4000000 entries: expected --tolerance"),
+            "{message}"
+        );
+    }
+}

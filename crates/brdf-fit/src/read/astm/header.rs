@@ -1,0 +1,338 @@
+//! What stands before the rows: keys, and the names of the columns.
+
+use crate::measurement::Metadata;
+use crate::read::angles::AngleUnit;
+use crate::read::text::{self, Field, Quantity, Text, is_angle, micrometres};
+use crate::read::{Convention, ReadError, ReadOptions, Side};
+use crate::refractive_index::RefractiveIndex;
+
+/// One of the two directions' angles.
+const ANGLES: [&str; 4] = ["theta_i", "phi_i", "theta_s", "phi_s"];
+
+/// What a column holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Column {
+    /// By its place in [`ANGLES`].
+    Angle(usize),
+    /// At a wavelength in micrometres, where the name gives one.
+    Value(Option<f64>),
+    Sigma,
+    Unused,
+}
+
+/// What stands before the rows.
+pub(super) struct Header {
+    /// The number of the line `VARS`.
+    number: u64,
+    pub(super) metadata: Metadata,
+    pub(super) names: Vec<String>,
+    pub(super) columns: Vec<Column>,
+    /// Angles that are the same for all rows, in the file's unit.
+    pub(super) given: [Option<f64>; 4],
+    pub(super) unit: Option<AngleUnit>,
+    pub(super) quantity: Quantity,
+    wavelength_um: Option<f64>,
+    pub(super) refractive_index: Option<RefractiveIndex>,
+    count: Option<f64>,
+    /// Sentences about the columns.
+    pub(super) said: Vec<String>,
+}
+
+impl Header {
+    pub(super) fn read<'a>(
+        text: &Text<'_>,
+        lines: &mut impl Iterator<Item = Result<(u64, &'a [u8]), ReadError>>,
+    ) -> Result<Self, ReadError> {
+        let mut header = Self {
+            number: 0,
+            metadata: Metadata::default(),
+            names: Vec::new(),
+            columns: Vec::new(),
+            given: [None; 4],
+            unit: None,
+            quantity: Quantity::Brdf,
+            wavelength_um: None,
+            refractive_index: None,
+            count: None,
+            said: Vec::new(),
+        };
+        for line in lines {
+            let (number, line) = line?;
+            let Some((key, value)) = key_and_value(line) else {
+                continue;
+            };
+            if key == "vars" {
+                header.number = number;
+                header.take_columns(text, &value)?;
+                return Ok(header);
+            }
+            header.take_key(text, number, key, value)?;
+        }
+        Err(text
+            .error("has no line VARS: expected one with theta_i, theta_s and what was measured"))
+    }
+
+    fn take_key(
+        &mut self,
+        text: &Text<'_>,
+        line: u64,
+        key: String,
+        value: String,
+    ) -> Result<(), ReadError> {
+        let field = Field::plain(value.as_bytes());
+        match key.as_str() {
+            "theta_i" | "phi_i" | "theta_s" | "phi_s" => {
+                let angle = text.number(line, &key, &field, "expected an angle", is_angle)?;
+                let place = ANGLES.iter().position(|name| *name == key);
+                if let Some(given) = place.and_then(|place| self.given.get_mut(place)) {
+                    *given = Some(angle);
+                }
+            }
+            "angle_unit" | "angle_units" => self.unit = Some(unit_of(text, line, &value)?),
+            "num_points" | "data_points" => {
+                let expected = "expected the number of rows";
+                let accepts = |n: f64| n >= 0.0 && n.fract() == 0.0;
+                self.count = Some(text.number(line, &key, &field, expected, accepts)?);
+            }
+            "wavelength" => self.wavelength_um = Some(wavelength_of(text, line, &value)?),
+            "quantity" | "meas_name" => {
+                if let Some(quantity) = quantity_of(text, line, &value)? {
+                    self.quantity = quantity;
+                }
+            }
+            "refractive_index" => {
+                let index = value
+                    .parse()
+                    .map_err(|error| text.line_error(line, format!("refractive_index: {error}")))?;
+                self.refractive_index = Some(index);
+            }
+            "sample_name" => self.metadata.0.push(("sample".to_owned(), value.clone())),
+            _ => {}
+        }
+        self.metadata.0.push((key, value));
+        Ok(())
+    }
+
+    fn take_columns(&mut self, text: &Text<'_>, names: &str) -> Result<(), ReadError> {
+        self.names = if names.contains(',') {
+            names
+                .split(',')
+                .map(|name| name.trim().to_owned())
+                .collect()
+        } else {
+            names.split_whitespace().map(str::to_owned).collect()
+        };
+        self.columns = self.names.iter().map(|name| Column::named(name)).collect();
+        self.take_colours(text)?;
+        self.take_only_value(text)?;
+        self.check_columns(text)
+    }
+
+    /// Of X, Y and Z the second is the value.
+    fn take_colours(&mut self, text: &Text<'_>) -> Result<(), ReadError> {
+        let place = |name: &str| self.names.iter().position(|other| other == name);
+        if let (Some(_), Some(_), Some(_)) = (place("R"), place("G"), place("B")) {
+            let message = "R, G and B are colours of a screen: expected wavelengths such as 400nm, \
+                           one BRDF, or X, Y and Z, of which Y is read";
+            return Err(text.line_error(self.number, message));
+        }
+        if let (Some(_), Some(y), Some(_)) = (place("X"), place("Y"), place("Z")) {
+            self.columns[y] = Column::Value(None);
+            let said = "Y of X, Y and Z is read: the BRDF weighted by luminous efficiency";
+            self.said.push(said.to_owned());
+        }
+        Ok(())
+    }
+
+    /// Where no column is known to be the value, the only one that is not known is.
+    fn take_only_value(&mut self, text: &Text<'_>) -> Result<(), ReadError> {
+        let unused = |column: &Column| *column == Column::Unused;
+        let values = self
+            .columns
+            .iter()
+            .filter(|c| matches!(c, Column::Value(_)));
+        if values.count() > 0 {
+            return Ok(());
+        }
+        let mut places = (0..self.columns.len()).filter(|&i| unused(&self.columns[i]));
+        if let (Some(only), None) = (places.next(), places.next()) {
+            self.columns[only] = Column::Value(None);
+            if let Some(quantity) = quantity_of(text, self.number, &self.names[only])? {
+                self.quantity = quantity;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_columns(&self, text: &Text<'_>) -> Result<(), ReadError> {
+        let has = |column: &Column| self.columns.iter().filter(|other| *other == column).count();
+        let problem = |message: String| Err(text.line_error(self.number, message));
+        for (place, name) in ANGLES.iter().enumerate() {
+            let found = has(&Column::Angle(place));
+            if found > 1 {
+                return problem(format!("column {name} stands there twice"));
+            }
+            if found == 0 && self.given[place].is_none() && name.starts_with("theta") {
+                return problem(format!(
+                    "missing column {name}: expected theta_i, theta_s and what was measured"
+                ));
+            }
+        }
+        let values = self
+            .columns
+            .iter()
+            .filter(|c| matches!(c, Column::Value(_)))
+            .count();
+        if values == 0 {
+            return problem(
+                "no column for what was measured: expected BRDF or wavelengths such as 400nm"
+                    .to_owned(),
+            );
+        }
+        let untold = has(&Column::Value(None));
+        if untold > 1 || (untold == 1 && values > 1) {
+            return problem(
+                "several columns for what was measured, without wavelengths".to_owned(),
+            );
+        }
+        if has(&Column::Sigma) > 0 && values > 1 {
+            return problem("one column sigma for several wavelengths".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Where phi_i is not given, the coordinates are those of the beam.
+    pub(super) fn convention(
+        &self,
+        text: &Text<'_>,
+        options: &ReadOptions,
+    ) -> Result<Convention, ReadError> {
+        let phi_i = 1;
+        let given = self.given[phi_i].is_some() || self.columns.contains(&Column::Angle(phi_i));
+        let of_format = Convention {
+            theta_positive: Side::Source,
+            phi_zero: if given { Side::Source } else { Side::Forward },
+        };
+        let theta_only = ReadOptions {
+            phi_zero: None,
+            ..options.clone()
+        };
+        let why = "theta_s counts towards phi_s, and phi_zero says which side that is";
+        theta_only.fixed(text.path, of_format, why)?;
+        Ok(options.convention(of_format))
+    }
+
+    pub(super) fn check_count(&self, text: &Text<'_>, found: usize) -> Result<(), ReadError> {
+        match self.count {
+            _ if found == 0 => Err(text.line_error(self.number, "no rows follow VARS")),
+            Some(count) if count != found as f64 => {
+                let message = format!("{found} rows follow: expected {count}, as the header says");
+                Err(text.line_error(self.number, message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Of each column of values.
+    pub(super) fn wavelengths(&self) -> impl Iterator<Item = Option<f64>> {
+        self.columns.iter().filter_map(|column| match column {
+            Column::Value(wavelength) => Some(wavelength.or(self.wavelength_um)),
+            _ => None,
+        })
+    }
+
+    pub(super) fn unused(&self) -> Vec<String> {
+        let named = self.names.iter().zip(&self.columns);
+        let unused = named.filter(|(_, column)| **column == Column::Unused);
+        unused.map(|(name, _)| name.clone()).collect()
+    }
+}
+
+impl Column {
+    fn named(name: &str) -> Self {
+        let lower = name.to_lowercase();
+        let as_s = lower.replace("_r", "_s");
+        if let Some(place) = ANGLES.iter().position(|angle| *angle == as_s) {
+            return Self::Angle(place);
+        }
+        let wavelength_um = lower
+            .strip_suffix("nm")
+            .and_then(|number| micrometres(number.as_bytes()));
+        match lower.as_str() {
+            "brdf" | "bsdf" => Self::Value(None),
+            "sigma" => Self::Sigma,
+            _ if wavelength_um.is_some() => Self::Value(wavelength_um),
+            _ => Self::Unused,
+        }
+    }
+}
+
+/// The key in lower case and what stands behind it; of a comment only `key: value`.
+fn key_and_value(line: &[u8]) -> Option<(String, String)> {
+    let line = String::from_utf8_lossy(line);
+    if let Some(comment) = line.trim_start().strip_prefix('#') {
+        return text::key_and_value(comment).filter(|(key, _)| key != "vars");
+    }
+    let line = line.trim();
+    let (key, value) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let value = value.trim().trim_matches('"');
+    (!key.is_empty()).then(|| (key.trim_end_matches(':').to_lowercase(), value.to_owned()))
+}
+
+fn unit_of(text: &Text<'_>, line: u64, value: &str) -> Result<AngleUnit, ReadError> {
+    match value.to_lowercase().as_str() {
+        "deg" | "degree" | "degrees" => Ok(AngleUnit::Degrees),
+        "rad" | "radian" | "radians" => Ok(AngleUnit::Radians),
+        _ => {
+            let message = "is no unit of angles: expected deg or rad".to_owned();
+            Err(text.value_error(line, "angle_unit", value.as_bytes(), message))
+        }
+    }
+}
+
+fn wavelength_of(text: &Text<'_>, line: u64, value: &str) -> Result<f64, ReadError> {
+    let lower = value.to_lowercase();
+    let lower = lower.trim();
+    let nm = lower
+        .strip_suffix("nm")
+        .and_then(|nm| micrometres(nm.as_bytes()));
+    let um = ["um", "\u{b5}m", "\u{3bc}m", "microns", "micron"];
+    let um = um.iter().find_map(|unit| lower.strip_suffix(unit));
+    let number = |text: &str| {
+        text.trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|n| *n > 0.0 && n.is_finite())
+    };
+    let bare = || match number(lower)? {
+        um if um < 100.0 => Some(um),
+        _ => micrometres(lower.as_bytes()),
+    };
+    nm.or_else(|| um.and_then(number))
+        .or_else(bare)
+        .ok_or_else(|| {
+            let message =
+                "is not a wavelength: expected one such as 0.6328 um or 632.8 nm".to_owned();
+            text.value_error(line, "wavelength", value.as_bytes(), message)
+        })
+}
+
+/// What a name says that the values are; `None` where it says nothing that is known.
+fn quantity_of(text: &Text<'_>, line: u64, name: &str) -> Result<Option<Quantity>, ReadError> {
+    let lower = name.to_lowercase();
+    let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+    let has = |word: &str| parts.clone().any(|part| part == word);
+    if has("btdf") {
+        let message = "BTDF: the model is of reflection, expected a BRDF";
+        return Err(text.line_error(line, message));
+    }
+    if has("dsf") || has("ars") || has("cos") || parts.any(|part| part.starts_with("cosine")) {
+        return Ok(Some(Quantity::BrdfCos));
+    }
+    let mut parts = lower.split(|c: char| !c.is_alphanumeric());
+    Ok(parts.find_map(|part| match part {
+        "brdf" | "bsdf" => Some(Quantity::Brdf),
+        "brf" => Some(Quantity::ReflectanceFactor),
+        _ => None,
+    }))
+}

@@ -1,0 +1,271 @@
+//! Reflectance factors as the Black Lab gonioradiometer's processing writes them: words, then a
+//! line of column names, then a row for each pair of directions with a value for each wavelength.
+//!
+//! ```text
+//! BRF Values
+//! Aeroglaze Z307 on aluminium
+//! Measurements taken on ...
+//! src_z   src_a   view_z  view_a  630.79nm        852.23nm
+//!  10.000   0.000  75.000 180.000 0.033376        0.034890
+//! ```
+//!
+//! (Numbers made up.) Zenith angles and azimuths are in degrees; the azimuth is that of the
+//! direction as seen from the sample, so `view_a` = `src_a` looks back at the source and a
+//! difference of 180 deg is the forward side. `BRF Values` are reflectance factors, pi times the
+//! BRDF: they are relative to a standard whose own factors (0/45, traceable to NIST) the
+//! processing has already multiplied by. `BRDF Values` would be the BRDF itself.
+//!
+//! Source: the files below `data/raw/blacklab` of github.com/ua-loft/bsdf-tools (University of
+//! Arizona LOFT, commit b572b087765c) and that project's own reader, which divides by pi; the sense
+//! of the azimuth shows in them, as the lobe of a coating stands at a difference of 180 deg.
+
+use super::angles::{AngleUnit, TwoDirections};
+use super::text::{
+    BEYOND_HORIZON, Field, Quantity, Text, is_angle, is_reading, left_out, micrometres, words,
+};
+use super::{Convention, Format, ReadError, ReadOptions};
+use crate::measurement::{Measurement, Measurements, Metadata};
+
+const ANGLES: [&str; 4] = ["src_z", "src_a", "view_z", "view_a"];
+
+pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
+    let why =
+        "src_a and view_a are azimuths of one circle, and a difference of 0 is the source's side";
+    let convention = options.fixed(text.path, Convention::default(), why)?;
+    let mut lines = text.checked_lines();
+    let header = Header::read(&text, &mut lines)?;
+    let mut readings = Vec::new();
+    let mut beyond = 0;
+    for line in lines {
+        let (number, line) = line?;
+        if line.trim_ascii().is_empty() {
+            continue;
+        }
+        beyond += header.add_row(&text, number, line, &mut readings)?;
+    }
+    if readings.is_empty() {
+        let message = "no readings follow the names of the columns";
+        return Err(text.line_error(header.number, message));
+    }
+    let mut conversions: Vec<String> = header.quantity.conversion().into_iter().collect();
+    conversions.extend(left_out(beyond, BEYOND_HORIZON));
+    Ok(Measurements {
+        source: text.path.display().to_string(),
+        metadata: header.metadata,
+        convention,
+        format: Format::BlackLab,
+        conversions,
+        readings,
+        ..Measurements::default()
+    })
+}
+
+/// What stands before the rows.
+struct Header {
+    /// The number of the line that names the columns.
+    number: u64,
+    metadata: Metadata,
+    quantity: Quantity,
+    /// Of each column behind the angles: its name, and in micrometres.
+    wavelengths: Vec<(String, f64)>,
+}
+
+impl Header {
+    fn read<'a>(
+        text: &Text<'_>,
+        lines: &mut impl Iterator<Item = Result<(u64, &'a [u8]), ReadError>>,
+    ) -> Result<Self, ReadError> {
+        let mut said: Vec<String> = Vec::new();
+        for line in lines {
+            let (number, line) = line?;
+            let names: Vec<&[u8]> = words(line).collect();
+            if names.first().is_some_and(|name| *name == b"src_z") {
+                return Ok(Self {
+                    number,
+                    quantity: quantity(text, number, &said)?,
+                    metadata: metadata(said),
+                    wavelengths: wavelengths(text, number, &names)?,
+                });
+            }
+            said.push(String::from_utf8_lossy(line).trim().to_owned());
+        }
+        Err(text
+            .error("has no line of columns: expected src_z, src_a, view_z, view_a and wavelengths"))
+    }
+
+    /// Adds the readings of a row; how many are beyond the horizon instead.
+    fn add_row(
+        &self,
+        text: &Text<'_>,
+        number: u64,
+        line: &[u8],
+        readings: &mut Vec<Measurement>,
+    ) -> Result<usize, ReadError> {
+        let fields: Vec<&[u8]> = words(line).collect();
+        let (found, expected) = (fields.len(), ANGLES.len() + self.wavelengths.len());
+        if found != expected {
+            let message = format!("{found} fields: expected {expected}, as there are columns");
+            return Err(text.line_error(number, message));
+        }
+        let (angles, values) = fields.split_at(ANGLES.len());
+        let mut degrees = [0.0; 4];
+        for ((degrees, field), name) in degrees.iter_mut().zip(angles).zip(ANGLES) {
+            let field = Field::plain(field);
+            *degrees = text.number(number, name, &field, "expected degrees", is_angle)?;
+        }
+        let [theta_i, phi_i, theta_s, phi_s] = degrees;
+        let directions = TwoDirections {
+            theta_i,
+            phi_i,
+            theta_s,
+            phi_s,
+        };
+        let model = directions.in_model(AngleUnit::Degrees);
+        for (field, (name, wavelength_um)) in values.iter().zip(&self.wavelengths) {
+            let field = Field::plain(field);
+            let value = text.number(number, name, &field, "expected a reading", is_reading)?;
+            readings.extend(model.map(|(psi, theta, phi)| Measurement {
+                wavelength_um: Some(*wavelength_um),
+                psi,
+                theta,
+                phi,
+                brdf: self.quantity.to_brdf(value, theta),
+                sigma: None,
+            }));
+        }
+        Ok(if model.is_some() { 0 } else { values.len() })
+    }
+}
+
+/// What the first line says that the values are.
+fn quantity(text: &Text<'_>, header: u64, said: &[String]) -> Result<Quantity, ReadError> {
+    let title = said.iter().find(|line| !line.is_empty());
+    let mut words = title.map_or("", String::as_str).split_whitespace();
+    match words.next() {
+        Some("BRF") => Ok(Quantity::ReflectanceFactor),
+        Some("BRDF") => Ok(Quantity::Brdf),
+        _ => {
+            let message = "nothing before the columns says what the values are: expected a first line \"BRF Values\"";
+            Err(text.line_error(header, message))
+        }
+    }
+}
+
+/// The sample stands on the second line, by itself; the rest is kept as it is.
+fn metadata(said: Vec<String>) -> Metadata {
+    let said = said.into_iter().filter(|line| !line.is_empty());
+    let keys = ["values", "sample"]
+        .into_iter()
+        .chain(std::iter::repeat("note"));
+    Metadata(
+        keys.zip(said)
+            .map(|(key, line)| (key.to_owned(), line))
+            .collect(),
+    )
+}
+
+fn wavelengths(
+    text: &Text<'_>,
+    number: u64,
+    names: &[&[u8]],
+) -> Result<Vec<(String, f64)>, ReadError> {
+    let (angles, labels) = names.split_at(ANGLES.len().min(names.len()));
+    let as_named = |(name, expected): (&&[u8], &str)| *name == expected.as_bytes();
+    if !angles.iter().zip(ANGLES).all(as_named) || labels.is_empty() {
+        let message = "expected the columns src_z, src_a, view_z, view_a and at least one \
+                       wavelength such as 630.79nm";
+        return Err(text.line_error(number, message));
+    }
+    let wavelength = |label: &&[u8]| {
+        let name = String::from_utf8_lossy(label).into_owned();
+        let wavelength_um = micrometres(label.strip_suffix(b"nm").unwrap_or(label));
+        let found = wavelength_um.map(|um| (name, um));
+        found.ok_or_else(|| {
+            let message = "is not a wavelength: expected one such as 630.79nm".to_owned();
+            text.value_error(number, "wavelength", label, message)
+        })
+    };
+    labels.iter().map(wavelength).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+    use std::path::Path;
+
+    use super::*;
+    use crate::read::Side;
+
+    const TWO: &str = "BRF Values\nTest paint\nMeasurements taken on a day\n\
+        src_z\tsrc_a\tview_z\tview_a\t630.79nm\t852.23nm\n\
+        \x20 0.000\t  0.000\t 45.000\t  0.000\t0.10\t0.20\n\
+        \x2010.000\t  0.000\t 75.000\t180.000\t0.30\t0.40\n";
+
+    fn read_with(content: &str, options: &ReadOptions) -> Result<Measurements, ReadError> {
+        read(Text::new(Path::new("a.txt"), content.as_bytes())?, options)
+    }
+
+    fn error(content: &str) -> String {
+        let read = read_with(content, &ReadOptions::default());
+        read.unwrap_err().to_string()
+    }
+
+    #[test]
+    fn reflectance_factors_are_divided_by_pi_at_each_wavelength() {
+        let scan = read_with(TWO, &ReadOptions::default()).unwrap();
+        let readings = scan.readings();
+        assert_eq!(readings.len(), 4);
+        assert_eq!(readings[0].wavelength_um, Some(0.630_79));
+        assert_eq!(readings[3].wavelength_um, Some(0.852_23));
+        assert_eq!(readings[3].brdf, 0.4 / PI);
+        assert_eq!(scan.metadata.get("sample"), Some("Test paint"));
+        assert!(scan.conversions[0].contains("divided by pi"), "{scan:?}");
+    }
+
+    #[test]
+    fn opposite_azimuths_are_the_forward_side() {
+        let scan = read_with(TWO, &ReadOptions::default()).unwrap();
+        let reading = scan.readings()[2];
+        assert_eq!(reading.psi, 10_f64.to_radians());
+        assert_eq!(reading.in_plane_theta(), Some(-75_f64.to_radians()));
+    }
+
+    #[test]
+    fn readings_at_the_horizon_are_counted() {
+        let more = format!("{TWO}20 0 90 180 1 1\n95 0 20 180 1 1\n");
+        let scan = read_with(&more, &ReadOptions::default()).unwrap();
+        assert_eq!(scan.readings().len(), 4);
+        assert!(scan.conversions[1].starts_with("4 readings at or beyond 90 deg"));
+    }
+
+    #[test]
+    fn errors_name_line_column_and_value() {
+        let row = |row: &str| error(&format!("{TWO}{row}\n"));
+        assert_eq!(
+            row("1 2 3 4 5"),
+            "a.txt, line 7: 5 fields: expected 6, as there are columns"
+        );
+        assert!(row("1 2 x 4 5 6").contains("line 7, column view_z: \"x\" is not a number"));
+        assert!(row("1 2 3 4 5 nan").contains("column 852.23nm: \"nan\" is not a finite number"));
+        assert!(error("BRF Values\nsrc_z src_a\n").contains("line 2: expected the columns"));
+        assert!(error("src_z src_a view_z view_a 5nm\n").contains("\"BRF Values\""));
+        assert!(error("BRF\nsrc_z src_a view_z view_a x\n").contains("such as 630.79nm"));
+        assert!(error("BRF\nsrc_z src_a view_z view_a 5nm\n").contains("no readings"));
+        assert!(error("BRF\n").contains("no line of columns"));
+    }
+
+    #[test]
+    fn its_sides_cannot_be_chosen() {
+        let forward = ReadOptions {
+            phi_zero: Some(Side::Forward),
+            ..ReadOptions::default()
+        };
+        let error = read_with(TWO, &forward).unwrap_err().to_string();
+        assert!(error.contains("its sides cannot be chosen"), "{error}");
+        let source = ReadOptions {
+            phi_zero: Some(Side::Source),
+            ..ReadOptions::default()
+        };
+        assert!(read_with(TWO, &source).is_ok());
+    }
+}

@@ -1,0 +1,131 @@
+//! Readers of every format on anything at all: an answer or an error, and no end of the program.
+
+use std::fs;
+use std::path::Path;
+
+use brdf_fit::Measurements;
+use brdf_fit::read::{Format, ReadOptions, Side};
+use proptest::prelude::*;
+
+/// Reads as every format, and as what the content seems to be.
+fn read_as_all(bytes: &[u8]) {
+    let forced = Format::NAMED.map(|(format, _)| Some(format));
+    for format in forced.into_iter().chain([None]) {
+        for phi_zero in [None, Some(Side::Forward)] {
+            let options = ReadOptions {
+                format,
+                phi_zero,
+                ..ReadOptions::default()
+            };
+            if let Ok(scan) = Measurements::from_bytes("a.bsdf", bytes, &options) {
+                check(&scan);
+            }
+        }
+    }
+}
+
+/// What was read is in the model's domain.
+fn check(scan: &Measurements) {
+    assert!(!scan.readings().is_empty());
+    for reading in scan.readings() {
+        reading.validated().unwrap();
+        reading.geometry().unwrap();
+    }
+}
+
+fn valid_files() -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/formats");
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension != "md"))
+        .collect();
+    files.sort();
+    let mut contents: Vec<_> = files.iter().map(|path| fs::read(path).unwrap()).collect();
+    contents.push(b"# quantity: brdf_cos\npsi_deg,theta_deg,brdf_per_sr\n10,20,0.1\n".to_vec());
+    contents
+}
+
+#[test]
+fn the_valid_files_are_valid() {
+    for file in valid_files() {
+        check(&Measurements::from_bytes("a", &file, &ReadOptions::default()).unwrap());
+        read_as_all(&file);
+    }
+}
+
+/// What a word of a file may become.
+fn word() -> impl Strategy<Value = Vec<u8>> {
+    let known = [
+        "",
+        "0",
+        "-1",
+        "90",
+        "180",
+        "1e308",
+        "-1e308",
+        "1e-320",
+        "nan",
+        "inf",
+        "18446744073709551615",
+        "99999999999999999999",
+        "VARS",
+        "TIS",
+        "DataBegin",
+        "src_z",
+        "theta_i",
+        "nm",
+        "-nm",
+        "#",
+        "\"",
+        "\n",
+        "\r",
+        ",",
+        ";",
+        "\t",
+        "\0",
+        "\u{fffd}",
+        "R,G,B",
+        "X,Y,Z",
+        "deg",
+        "BTDF",
+    ];
+    prop_oneof![
+        proptest::sample::select(known.to_vec()).prop_map(|word| word.as_bytes().to_vec()),
+        proptest::collection::vec(any::<u8>(), 0..8),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn arbitrary_bytes_are_read_or_refused(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        read_as_all(&bytes);
+    }
+
+    #[test]
+    fn words_of_the_formats_in_any_order_are_read_or_refused(
+        words in proptest::collection::vec(word(), 0..60),
+        separator in proptest::sample::select(vec![" ", "\n", ",", "\t"]),
+    ) {
+        read_as_all(&words.join(separator.as_bytes()));
+    }
+
+    #[test]
+    fn files_with_something_else_in_them_are_read_or_refused(
+        file in 0..valid_files().len(),
+        changes in proptest::collection::vec((any::<proptest::sample::Index>(), 0..40_usize, word()), 1..4),
+        end in proptest::option::of(any::<proptest::sample::Index>()),
+    ) {
+        let mut bytes = valid_files().swap_remove(file);
+        // The beginning has the headers.
+        for (at, length, word) in changes {
+            let from = at.index(bytes.len().clamp(1, 1500)).min(bytes.len());
+            let to = (from + length).min(bytes.len());
+            bytes.splice(from..to, word);
+        }
+        if let Some(end) = end {
+            bytes.truncate(end.index(bytes.len() + 1));
+        }
+        read_as_all(&bytes);
+    }
+}

@@ -14,6 +14,9 @@ pub(super) const MOST_ENTRIES: usize = 4_000_000;
 /// More angles on one axis are none either: a table of them has next to none on the others.
 const MOST_ANGLES: usize = 4000;
 
+/// Where the search for a tolerance that can be kept to begins.
+const SMALLEST_SEARCHED: f64 = 1e-4;
+
 /// So often a table is refined; each time the share is four fifths of what it was.
 const ROUNDS: usize = 16;
 
@@ -59,8 +62,9 @@ pub(super) struct Table {
     pub(super) checked: usize,
 }
 
-/// The smallest tolerance that a table can keep to, about.
+/// No table keeps to the tolerance.
 pub(super) struct Unreachable {
+    /// One that a table does keep to; two thirds of it are too little.
     pub(super) reachable: f64,
 }
 
@@ -70,19 +74,32 @@ impl Table {
     /// Errors: it would have too many entries.
     pub(super) fn within(function: &impl Tabulated, tolerance: f64) -> Result<Self, Unreachable> {
         let mut failed = Vec::new();
+        if let Some(table) = Self::refined(function, tolerance, &mut failed) {
+            return Ok(table);
+        }
+        let mut reachable = tolerance.max(SMALLEST_SEARCHED);
+        loop {
+            reachable = in_two_digits(1.4 * reachable);
+            let found = Self::refined(function, reachable, &mut failed).is_some();
+            // An error of all there is: such a table is none.
+            if found || reachable >= 1.0 {
+                return Err(Unreachable { reachable });
+            }
+        }
+    }
+
+    /// `None` where there are too many entries. `failed` are places where a table failed before.
+    fn refined(function: &impl Tabulated, tolerance: f64, failed: &mut Vec<At>) -> Option<Self> {
         let mut share = 0.5 * tolerance;
         for _ in 0..ROUNDS {
-            let Some(axes) = axes(function, &failed, share) else {
-                break;
-            };
-            let mut table = Self::new(function, axes);
+            let mut table = Self::new(function, axes(function, failed, share)?);
             failed.extend(table.check(function, tolerance));
             if table.largest_error <= tolerance {
-                return Ok(table);
+                return Some(table);
             }
             share *= 0.8;
         }
-        Err(reachable(function, &failed, share))
+        None
     }
 
     fn new(function: &impl Tabulated, axes: [Vec<f64>; 3]) -> Self {
@@ -215,22 +232,10 @@ fn axes(function: &impl Tabulated, failed: &[At], share: f64) -> Option<[Vec<f64
     Some(axes)
 }
 
-/// What the largest error is with as many entries as there may be, about, rounded up to two digits.
-fn reachable(function: &impl Tabulated, failed: &[At], share: f64) -> Unreachable {
-    // Below it is not worth a search: what fits here is said.
-    let mut share = share.max(1e-4);
-    let axes = loop {
-        share *= 1.25;
-        if let Some(axes) = axes(function, failed, share) {
-            break axes;
-        }
-    };
-    let mut table = Table::new(function, axes);
-    table.check(function, f64::INFINITY);
-    let unit = 10_f64.powf(table.largest_error.log10().floor() - 1.0);
-    Unreachable {
-        reachable: (table.largest_error / unit).ceil() * unit,
-    }
+/// Rounded up.
+fn in_two_digits(number: f64) -> f64 {
+    let unit = 10_f64.powf(number.log10().floor() - 1.0);
+    (number / unit).ceil() * unit
 }
 
 /// One axis that is refined.

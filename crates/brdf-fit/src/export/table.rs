@@ -11,6 +11,12 @@ use rand::{RngExt as _, SeedableRng as _};
 /// More entries are no table that a program wants to read.
 pub(super) const MOST_ENTRIES: usize = 4_000_000;
 
+/// More angles on one axis are none either: a table of them has next to none on the others.
+const MOST_ANGLES: usize = 4000;
+
+/// Where the search for a tolerance that can be kept to begins.
+const SMALLEST_SEARCHED: f64 = 1e-4;
+
 /// So often a table is refined; each time the share is four fifths of what it was.
 const ROUNDS: usize = 16;
 
@@ -56,8 +62,9 @@ pub(super) struct Table {
     pub(super) checked: usize,
 }
 
-/// The smallest tolerance that a table can keep to, about.
+/// No table keeps to the tolerance.
 pub(super) struct Unreachable {
+    /// One that a table does keep to; two thirds of it are too little.
     pub(super) reachable: f64,
 }
 
@@ -67,19 +74,32 @@ impl Table {
     /// Errors: it would have too many entries.
     pub(super) fn within(function: &impl Tabulated, tolerance: f64) -> Result<Self, Unreachable> {
         let mut failed = Vec::new();
+        if let Some(table) = Self::refined(function, tolerance, &mut failed) {
+            return Ok(table);
+        }
+        let mut reachable = tolerance.max(SMALLEST_SEARCHED);
+        loop {
+            reachable = in_two_digits(1.4 * reachable);
+            let found = Self::refined(function, reachable, &mut failed).is_some();
+            // An error of all there is: such a table is none.
+            if found || reachable >= 1.0 {
+                return Err(Unreachable { reachable });
+            }
+        }
+    }
+
+    /// `None` where there are too many entries. `failed` are places where a table failed before.
+    fn refined(function: &impl Tabulated, tolerance: f64, failed: &mut Vec<At>) -> Option<Self> {
         let mut share = 0.5 * tolerance;
         for _ in 0..ROUNDS {
-            let Some(axes) = axes(function, &failed, share) else {
-                break;
-            };
-            let mut table = Self::new(function, axes);
+            let mut table = Self::new(function, axes(function, failed, share)?);
             failed.extend(table.check(function, tolerance));
             if table.largest_error <= tolerance {
-                return Ok(table);
+                return Some(table);
             }
             share *= 0.8;
         }
-        Err(reachable(function, &failed, share))
+        None
     }
 
     fn new(function: &impl Tabulated, axes: [Vec<f64>; 3]) -> Self {
@@ -90,12 +110,15 @@ impl Table {
             checked: 0,
             axes,
         };
-        let [first, second, third] = table.axes.each_ref().map(Vec::len);
-        let mut values = Vec::with_capacity(first * second * third * table.channels);
-        for place in places([first, second, third]) {
-            let at = table.at(place);
-            // For the cells that reach beyond where the function has values.
-            let needed = table.near(place).any(|at| function.is_defined(at));
+        let size = table.axes.each_ref().map(Vec::len);
+        let defined: Vec<bool> = places(size)
+            .map(|place| function.is_defined(table.at(place)))
+            .collect();
+        // Further from where the function has values no cell reaches.
+        let needed = |place| near(size, place).any(|beside| defined[entry(size, beside)]);
+        let mut values = Vec::with_capacity(defined.len() * table.channels);
+        for place in places(size) {
+            let (at, needed) = (table.at(place), needed(place));
             let value = |channel| {
                 if needed {
                     function.value(channel, at)
@@ -111,28 +134,12 @@ impl Table {
 
     /// The value of an entry, given by its places on the axes.
     pub(super) fn value(&self, place: [usize; 3], channel: usize) -> f64 {
-        let [_, second, third] = self.axes.each_ref().map(Vec::len);
-        let entry = (place[0] * second + place[1]) * third + place[2];
+        let entry = entry(self.axes.each_ref().map(Vec::len), place);
         self.values[entry * self.channels + channel]
     }
 
     fn at(&self, place: [usize; 3]) -> At {
         std::array::from_fn(|axis| self.axes[axis][place[axis]])
-    }
-
-    /// The entries beside one, and itself.
-    fn near(&self, place: [usize; 3]) -> impl Iterator<Item = At> {
-        let beside = |axis: usize| {
-            let last = self.axes[axis].len() - 1;
-            place[axis].saturating_sub(1)..=(place[axis] + 1).min(last)
-        };
-        let (second, third) = (beside(1), beside(2));
-        beside(0).flat_map(move |i| {
-            let third = third.clone();
-            second
-                .clone()
-                .flat_map(move |j| third.clone().map(move |k| self.at([i, j, k])))
-        })
     }
 
     /// Interpolates in a cell, given by its first corner and the place in it, each from 0 to 1.
@@ -200,6 +207,18 @@ fn places([first, second, third]: [usize; 3]) -> impl Iterator<Item = [usize; 3]
     (0..first).flat_map(move |i| (0..second).flat_map(move |j| (0..third).map(move |k| [i, j, k])))
 }
 
+/// The number of an entry in their order.
+fn entry([_, second, third]: [usize; 3], place: [usize; 3]) -> usize {
+    (place[0] * second + place[1]) * third + place[2]
+}
+
+/// The entries beside one, and itself.
+fn near(size: [usize; 3], place: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let from = place.map(|at| at.saturating_sub(1));
+    let counts = std::array::from_fn(|axis| (place[axis] + 2).min(size[axis]) - from[axis]);
+    places(counts).map(move |offset| std::array::from_fn(|axis| from[axis] + offset[axis]))
+}
+
 /// The axes for a share of the tolerance; `None` where there are too many entries.
 fn axes(function: &impl Tabulated, failed: &[At], share: f64) -> Option<[Vec<f64>; 3]> {
     let samples = function.samples();
@@ -213,21 +232,10 @@ fn axes(function: &impl Tabulated, failed: &[At], share: f64) -> Option<[Vec<f64
     Some(axes)
 }
 
-/// What the largest error is with as many entries as there may be, about, rounded up to two digits.
-fn reachable(function: &impl Tabulated, failed: &[At], share: f64) -> Unreachable {
-    let mut share = share;
-    let axes = loop {
-        share *= 1.25;
-        if let Some(axes) = axes(function, failed, share) {
-            break axes;
-        }
-    };
-    let mut table = Table::new(function, axes);
-    table.check(function, f64::INFINITY);
-    let unit = 10_f64.powf(table.largest_error.log10().floor() - 1.0);
-    Unreachable {
-        reachable: (table.largest_error / unit).ceil() * unit,
-    }
+/// Rounded up.
+fn in_two_digits(number: f64) -> f64 {
+    let unit = 10_f64.powf(number.log10().floor() - 1.0);
+    (number / unit).ceil() * unit
 }
 
 /// One axis that is refined.
@@ -266,6 +274,7 @@ impl<'a, F: Tabulated> Refinement<'a, F> {
         let (from, to) = self.function.ranges()[self.axis];
         let smallest = (to - from) * 1e-6;
         let (mut angles, mut angle) = (vec![from], from);
+        let most = most.min(MOST_ANGLES);
         let mut step = (to - from) / 64.0;
         while angle < to {
             step = (2.0 * step).min(to - angle);

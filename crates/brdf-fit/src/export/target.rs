@@ -68,12 +68,12 @@ pub enum ExportError {
     /// No table of a size that is of use keeps to the tolerance.
     #[error(
         "a table within {tolerance:e} has more than {MOST_ENTRIES} entries: expected --tolerance \
-         {reachable:.1e} or more, about"
+         {reachable:.1e} or more"
     )]
     Tolerance {
         /// The tolerance that was asked for.
         tolerance: f64,
-        /// About the smallest that can be kept to.
+        /// One that can be kept to.
         reachable: f64,
     },
     /// Angles outside the model's domain.

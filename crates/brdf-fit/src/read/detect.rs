@@ -103,6 +103,6 @@ mod tests {
             assert_eq!(format.name(), name);
         }
         let error = "x".parse::<Format>().unwrap_err();
-        assert!(error.contains("expected one of csv, astm, "), "{error}");
+        assert!(error.contains("expected one of csv, merl, astm, "), "{error}");
     }
 }

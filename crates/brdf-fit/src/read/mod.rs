@@ -47,8 +47,8 @@ pub enum Format {
 impl Format {
     /// All formats, with the names that options and files give them.
     pub const NAMED: [(Self, &str); 6] = [
-        (Self::Merl, "merl"),
         (Self::Csv, "csv"),
+        (Self::Merl, "merl"),
         (Self::Astm, "astm"),
         (Self::Zemax, "zemax"),
         (Self::BlackLab, "black-lab"),

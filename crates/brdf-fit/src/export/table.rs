@@ -12,10 +12,10 @@ use rand::{RngExt as _, SeedableRng as _};
 pub(super) const MOST_ENTRIES: usize = 4_000_000;
 
 /// More angles on one axis are none either: a table of them has next to none on the others.
-const MOST_ANGLES: usize = 4000;
+const MOST_ANGLES: usize = 2000;
 
 /// Where the search for a tolerance that can be kept to begins.
-const SMALLEST_SEARCHED: f64 = 1e-4;
+const SMALLEST_SEARCHED: f64 = 1e-3;
 
 /// So often a table is refined; each time the share is four fifths of what it was.
 const ROUNDS: usize = 16;
@@ -64,7 +64,7 @@ pub(super) struct Table {
 
 /// No table keeps to the tolerance.
 pub(super) struct Unreachable {
-    /// One that a table does keep to; two thirds of it are too little.
+    /// One that a table does keep to; the next smaller one that was tried is too little.
     pub(super) reachable: f64,
 }
 

@@ -126,6 +126,12 @@ impl Sampler {
         }
     }
 
+    /// The weights w_s at cos psi = (i / 16)^2, i = 0 ... 16, between which they are linear in
+    /// sqrt(cos psi): what a program needs that draws the same directions.
+    pub fn specular_weights(&self) -> &[f64; INCIDENCES] {
+        &self.specular_weights
+    }
+
     /// Draws the view direction for a source, both unit vectors away from the surface with z its
     /// normal, from three numbers of [0, 1): the first chooses the lobe, the others the direction.
     ///

@@ -2,7 +2,10 @@
 //! form.
 
 mod coating;
+mod mitsuba;
+mod rgb;
 mod target;
 
 pub use coating::{Coating, CoatingError, Fitted};
-pub use target::{ExportError, ExportOptions, Target, export};
+pub use rgb::{COLOURS, PRIMARIES_UM, REACH_UM};
+pub use target::{ExportError, ExportOptions, Target, export, export_beside};

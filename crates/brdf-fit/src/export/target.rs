@@ -4,17 +4,28 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use super::coating::{Coating, CoatingError};
+use super::mitsuba;
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
+    /// Mitsuba 3: a BSDF plugin in Python, and a scene beside it.
+    Mitsuba,
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 1] = [(Self::Json, "json")];
+    pub const NAMED: [(Self, &str); 2] = [(Self::Json, "json"), (Self::Mitsuba, "mitsuba")];
+
+    /// The extension of the second file of a form that has one.
+    pub fn beside(self) -> Option<&'static str> {
+        match self {
+            Self::Mitsuba => Some("xml"),
+            Self::Json => None,
+        }
+    }
 }
 
 impl FromStr for Target {
@@ -36,6 +47,8 @@ pub struct ExportOptions {
     pub name: String,
     /// The largest error of a table: of f_r interpolated between its entries, relative.
     pub tolerance: f64,
+    /// The wavelengths in micrometres that stand for red, green and blue; see [`Coating::rgb`].
+    pub rgb: Option<[f64; 3]>,
 }
 
 /// Why a coating does not leave.
@@ -53,11 +66,25 @@ pub enum ExportError {
 pub fn export(
     coating: &Coating,
     target: Target,
-    _options: &ExportOptions,
+    options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
     match target {
         Target::Json => coating.write(writer)?,
+        Target::Mitsuba => mitsuba::write_plugin(coating, options, writer)?,
+    }
+    Ok(())
+}
+
+/// Writes the second file of a form that has one ([`Target::beside`]), and nothing for others.
+pub fn export_beside(
+    target: Target,
+    options: &ExportOptions,
+    writer: &mut dyn Write,
+) -> Result<(), ExportError> {
+    match target {
+        Target::Mitsuba => mitsuba::write_scene(options, writer)?,
+        Target::Json => {}
     }
     Ok(())
 }

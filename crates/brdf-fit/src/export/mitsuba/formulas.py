@@ -90,7 +90,7 @@ class Lobe:
         else:
             a = dr.log(1 + u * math.expm1(-s * L)) / s
             b = dr.log(1 + (1 - u) * math.expm1(s * L)) / s
-        return self.k1_2 * ((dr.exp(a) - 1) / (1 - dr.exp(b))) * (1 if s else -1)
+        return self.k1_2 * ((dr.exp(a) - 1) / (1 - dr.exp(b)))
 
     def mirrored(self, wi, u, v):
         t = self.tan2(u)

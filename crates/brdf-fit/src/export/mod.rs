@@ -2,6 +2,7 @@
 //! form.
 
 mod coating;
+mod source;
 mod target;
 
 pub use coating::{Coating, CoatingError, Fitted};

@@ -4,17 +4,20 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use super::coating::{Coating, CoatingError};
+use super::source::{Language, NameError, Source};
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
+    /// A module of Python, over arrays of NumPy.
+    Python,
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 1] = [(Self::Json, "json")];
+    pub const NAMED: [(Self, &str); 2] = [(Self::Json, "json"), (Self::Python, "python")];
 }
 
 impl FromStr for Target {
@@ -44,6 +47,9 @@ pub enum ExportError {
     /// The form has no room for it.
     #[error(transparent)]
     Coating(#[from] CoatingError),
+    /// The name is none in source code.
+    #[error(transparent)]
+    Name(#[from] NameError),
     /// It cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -53,11 +59,15 @@ pub enum ExportError {
 pub fn export(
     coating: &Coating,
     target: Target,
-    _options: &ExportOptions,
+    options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
     match target {
         Target::Json => coating.write(writer)?,
+        Target::Python => {
+            let source = Source::new(&options.name, coating.only()?)?;
+            writer.write_all(source.text(Language::Python).as_bytes())?;
+        }
     }
     Ok(())
 }

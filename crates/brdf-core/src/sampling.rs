@@ -126,10 +126,10 @@ impl Sampler {
         }
     }
 
-    /// The weights w_s at cos psi = (i / 16)^2, i = 0 ... 16, between which they are linear in
-    /// sqrt(cos psi): what a program needs that draws the same directions.
-    pub fn specular_weights(&self) -> &[f64; INCIDENCES] {
-        &self.specular_weights
+    /// The weight w_s of the specular lobe at cos psi = (i/16)^2, i from 0 to 16. Between them it is
+    /// interpolated linearly in sqrt(cos psi).
+    pub fn specular_weights(&self) -> [f64; INCIDENCES] {
+        self.specular_weights
     }
 
     /// Draws the view direction for a source, both unit vectors away from the surface with z its

@@ -4,6 +4,7 @@
 mod coating;
 mod mitsuba;
 mod rgb;
+mod source;
 mod target;
 
 pub use coating::{Coating, CoatingError, Fitted};

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use super::coating::{Coating, CoatingError};
 use super::mitsuba;
+use super::source::{Language, NameError, Source};
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,18 +14,21 @@ pub enum Target {
     Json,
     /// Mitsuba 3: a BSDF plugin in Python, and a scene beside it.
     Mitsuba,
+    /// A module of Python, over arrays of NumPy.
+    Python,
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 2] = [(Self::Json, "json"), (Self::Mitsuba, "mitsuba")];
+    pub const NAMED: [(Self, &str); 3] = [
+        (Self::Json, "json"),
+        (Self::Python, "python"),
+        (Self::Mitsuba, "mitsuba"),
+    ];
 
     /// The extension of the second file of a form that has one.
     pub fn beside(self) -> Option<&'static str> {
-        match self {
-            Self::Mitsuba => Some("xml"),
-            Self::Json => None,
-        }
+        (self == Self::Mitsuba).then_some("xml")
     }
 }
 
@@ -57,6 +61,9 @@ pub enum ExportError {
     /// The form has no room for it.
     #[error(transparent)]
     Coating(#[from] CoatingError),
+    /// The name is none in source code.
+    #[error(transparent)]
+    Name(#[from] NameError),
     /// It cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -72,6 +79,10 @@ pub fn export(
     match target {
         Target::Json => coating.write(writer)?,
         Target::Mitsuba => mitsuba::write_plugin(coating, options, writer)?,
+        Target::Python => {
+            let source = Source::new(&options.name, coating.only()?)?;
+            writer.write_all(source.text(Language::Python).as_bytes())?;
+        }
     }
     Ok(())
 }
@@ -82,9 +93,8 @@ pub fn export_beside(
     options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
-    match target {
-        Target::Mitsuba => mitsuba::write_scene(options, writer)?,
-        Target::Json => {}
+    if target == Target::Mitsuba {
+        mitsuba::write_scene(options, writer)?;
     }
     Ok(())
 }

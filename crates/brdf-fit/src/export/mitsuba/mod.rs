@@ -2,19 +2,19 @@
 //! material on a sphere.
 //!
 //! In Mitsuba's terms: `eval` is f_r cos theta in 1/sr, wi the direction of the viewer and wo that of
-//! the source, which the reciprocal f_r may exchange; directions are in the frame of the surface,
-//! z its normal. One channel's lobes are chosen with equal probability, so that the density is the
-//! mean of theirs; [`Sampler`] has the rest.
+//! the source, which the reciprocal f_r may exchange; directions are in the frame of the surface, z
+//! its normal. The BRDFs of the colours are drawn from with equal probability, so that the density is
+//! the mean of theirs.
 
 use std::io::{self, Write};
 
-use brdf_core::{AnyBrdf, Sampler};
-
 use super::coating::{Coating, Fitted};
 use super::rgb::COLOURS;
+use super::source::python::drjit;
+use super::source::{NameError, Source};
 use super::target::{ExportError, ExportOptions};
 
-const FORMULAS: &str = include_str!("formulas.py");
+const HEAD: &str = include_str!("head.py");
 const PLUGIN: &str = include_str!("plugin.py");
 const SCENE: &str = include_str!("scene.xml");
 
@@ -24,10 +24,14 @@ pub(super) fn write_plugin(
     options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
-    let fits = coating.rgb(options.rgb)?;
-    write_head(&fits, &options.name, writer)?;
-    write!(writer, "{FORMULAS}\n\n")?;
-    write_lobes(&fits.map(|fit| fit.brdf), writer)?;
+    let name = &options.name;
+    let lobes = Lobes::of(coating.rgb(options.rgb)?);
+    write!(writer, "{}", HEAD.replace("@NAME@", name))?;
+    for (lobe, fit) in &lobes.distinct {
+        let formulas = formulas(name, lobe, fit)?;
+        write!(writer, "\n{formulas}\n")?;
+    }
+    lobes.write(name, writer)?;
     write!(writer, "\n\n{PLUGIN}")?;
     Ok(())
 }
@@ -37,57 +41,52 @@ pub(super) fn write_scene(options: &ExportOptions, writer: &mut dyn Write) -> io
     writer.write_all(SCENE.replace("@NAME@", &options.name).as_bytes())
 }
 
-/// What the plugin is of, and what it needs.
-fn write_head(fits: &[&Fitted; 3], name: &str, writer: &mut dyn Write) -> io::Result<()> {
-    writeln!(writer, "# A fitted coating as a BSDF plugin of Mitsuba 3:")?;
-    for (colour, fit) in COLOURS.iter().zip(fits) {
-        let wavelength = fit.wavelength_um.map(|um| format!("{um} um of "));
-        let wavelength = wavelength.unwrap_or_default();
-        // A file's name may have anything in it: it is quoted.
-        writeln!(
-            writer,
-            "#   {colour}: {wavelength}{:?}, E = {:.3} %, readings up to psi = {} deg",
-            fit.file, fit.e_percent, fit.psi_max_deg
-        )?;
-    }
-    writeln!(writer, "NAME = \"{name}\"\n\n")
+fn formulas(name: &str, lobe: &str, fit: &Fitted) -> Result<String, NameError> {
+    Ok(drjit(&Source::new(&format!("{name}_{lobe}"), fit)?))
 }
 
-/// The BRDFs of red, green and blue, each once.
-fn write_lobes(channels: &[AnyBrdf; 3], writer: &mut dyn Write) -> io::Result<()> {
-    let mut distinct: Vec<&AnyBrdf> = Vec::new();
-    for channel in channels {
-        if !distinct.contains(&channel) {
-            distinct.push(channel);
+/// The BRDFs of red, green and blue.
+struct Lobes<'a> {
+    /// Each once, with a name.
+    distinct: Vec<(&'static str, &'a Fitted)>,
+    /// The names of those of red, green and blue.
+    channels: [&'static str; 3],
+}
+
+impl<'a> Lobes<'a> {
+    fn of(fits: [&'a Fitted; 3]) -> Self {
+        if fits.iter().all(|fit| *fit == fits[0]) {
+            return Self {
+                distinct: vec![("grey", fits[0])],
+                channels: ["grey"; 3],
+            };
         }
+        let mut distinct: Vec<(&str, &Fitted)> = Vec::new();
+        let mut channels = COLOURS;
+        for (channel, fit) in channels.iter_mut().zip(fits) {
+            match distinct.iter().find(|(_, other)| *other == fit) {
+                Some((first, _)) => *channel = first,
+                None => distinct.push((channel, fit)),
+            }
+        }
+        Self { distinct, channels }
     }
-    writeln!(writer, "LOBES = [")?;
-    for brdf in &distinct {
-        write_lobe(brdf, writer)?;
-    }
-    writeln!(writer, "]")?;
-    let place = |channel: &AnyBrdf| distinct.iter().position(|brdf| *brdf == channel);
-    let [red, green, blue] = channels
-        .each_ref()
-        .map(|channel| place(channel).unwrap_or(0));
-    writeln!(
-        writer,
-        "CHANNELS = [LOBES[{red}], LOBES[{green}], LOBES[{blue}]]"
-    )
-}
 
-fn write_lobe(brdf: &AnyBrdf, writer: &mut dyn Write) -> io::Result<()> {
-    let at = brdf.model_parameters();
-    let family = serde_json::to_string(&brdf.family())?;
-    let weights = Sampler::new(brdf);
-    writeln!(
-        writer,
-        "    Lobe({family}, {:?}, {:?}, {:?}, {:?}, {:?}, {:?}),",
-        at.k2,
-        at.kd,
-        at.k1,
-        at.n,
-        at.p,
-        weights.specular_weights()
-    )
+    /// Writes what of the formulas the plugin calls.
+    fn write(&self, name: &str, writer: &mut dyn Write) -> io::Result<()> {
+        for (lobe, _) in &self.distinct {
+            let of = format!("{name}_{lobe}");
+            write!(
+                writer,
+                "\n{} = Lobe(\n    {of}_of_directions, {of}_KD / {of}_PI, {of}_specular_weight, \
+                 {of}_mirrored_density, {of}_draw\n)\n",
+                lobe.to_uppercase()
+            )?;
+        }
+        let lobes = self.distinct.iter().map(|(lobe, _)| lobe.to_uppercase());
+        let lobes: Vec<_> = lobes.collect();
+        let channels = self.channels.map(str::to_uppercase);
+        writeln!(writer, "LOBES = [{}]", lobes.join(", "))?;
+        writeln!(writer, "CHANNELS = [{}]", channels.join(", "))
+    }
 }

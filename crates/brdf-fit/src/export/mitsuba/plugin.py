@@ -33,46 +33,58 @@ def spectrum(values, wavelengths):
     return blue + to_green * (green - blue) + to_red * (red - green)
 
 
-def eval_cos(ctx, si, wo, active):
-    """f_r cos theta, in 1/sr, of the components that are wanted; 0 below the surface."""
+def brdf(lobe, ctx, wi, wo):
+    """f_r of the components that are wanted, in 1/sr."""
     glossy, diffuse = parts(ctx)
+    if glossy and diffuse:
+        return lobe.value(wi, wo)
+    if glossy:
+        return lobe.value(wi, wo) - lobe.lambertian
+    return mi.Float(lobe.lambertian if diffuse else 0)
+
+
+def eval_cos(ctx, si, wo, active):
+    """f_r cos theta, in 1/sr; 0 below the surface."""
     active, wi, wo = above(si.wi, wo, active)
-    values = {lobe: lobe.value(wi, wo, glossy, diffuse) for lobe in LOBES}
+    values = {lobe: brdf(lobe, ctx, wi, wo) for lobe in LOBES}
     f_r = spectrum([values[lobe] for lobe in CHANNELS], si.wavelengths)
     return dr.select(active, f_r * wo.z, 0)
 
 
-def specular_share(lobe, ctx, wi):
-    """The probability that the facets are drawn from, and not the cosine."""
+def shares(lobe, ctx, wi):
+    """The probabilities that a direction is drawn from the facets, and from the cosine."""
     glossy, diffuse = parts(ctx)
+    weight = lobe.specular_weight(wi.z)
     if glossy and diffuse:
-        return lobe.specular_weight(wi.z)
-    return mi.Float(1 if glossy else 0)
+        return weight, 1 - weight
+    # Where there are no facets to draw from, none is.
+    return dr.select(weight > 0, mi.Float(glossy), 0), mi.Float(diffuse)
 
 
 def density(ctx, si, wo, active):
-    """The density of the directions that `drawn` gives, in 1/sr: the mean of those of the lobes."""
+    """The density of the directions that are drawn, in 1/sr: the mean of those of the lobes."""
     active, wi, wo = above(si.wi, wo, active)
     total = mi.Float(0)
     for lobe in LOBES:
-        share = specular_share(lobe, ctx, wi)
-        total += share * lobe.specular_density(wi, wo) + (1 - share) * wo.z / dr.pi
-    return dr.select(active & any(parts(ctx)), total / len(LOBES), 0)
+        facets, cosine = shares(lobe, ctx, wi)
+        total += facets * lobe.mirrored_density(wi, wo) + cosine * wo.z / dr.pi
+    return dr.select(active, total / len(LOBES), 0)
 
 
-def drawn(ctx, wi, choice, uv):
+def draw(ctx, wi, choice, uv):
     """
     A direction for the one of wi, and whether it is from the facets. The whole part of
-    choice * len(LOBES) chooses the lobe, what is left of it between the facets and the cosine.
+    choice * len(LOBES) chooses the lobe, what is left of it between facets and cosine.
     """
-    position = choice * len(LOBES)
     wo, glossy = mi.Vector3f(UP), mi.Mask(False)
     for i, lobe in enumerate(LOBES):
-        from_facets = position - i < specular_share(lobe, ctx, wi)
-        mirrored, cosine = lobe.mirrored(wi, uv), mi.warp.square_to_cosine_hemisphere(uv)
-        reached = position >= i
-        wo = dr.select(reached, dr.select(from_facets, mirrored, cosine), wo)
-        glossy = dr.select(reached, from_facets, glossy)
+        left = choice * len(LOBES) - i
+        facets, cosine = shares(lobe, ctx, wi)
+        # The lobe chooses the facets where the number is below its weight, the cosine for 1.
+        from_facets = left < facets
+        drawn = lobe.draw(wi, (dr.select(from_facets, 0.0, 1.0), uv.x, uv.y))
+        wo = dr.select(left >= 0, mi.Vector3f(*drawn), wo)
+        glossy = dr.select(left >= 0, from_facets, glossy)
     return wo, glossy
 
 
@@ -103,7 +115,7 @@ def register():
         def sample(self, ctx, si, sample1, sample2, active=True):
             active, wi, _ = above(si.wi, mi.Vector3f(UP), active)
             bs = dr.zeros(mi.BSDFSample3f)
-            bs.wo, glossy = drawn(ctx, wi, sample1, sample2)
+            bs.wo, glossy = draw(ctx, wi, sample1, sample2)
             bs.pdf = density(ctx, si, bs.wo, active)
             bs.eta = 1
             bs.sampled_component = dr.select(glossy, mi.UInt32(GLOSSY), mi.UInt32(DIFFUSE))

@@ -2,6 +2,7 @@
 //! test of sampling, and as a picture. Skipped where there is no Python with mitsuba, and, for the
 //! variant `llvm_ad_rgb`, where Dr.Jit finds no LLVM.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -161,27 +162,31 @@ fn geometry([source, view]: &[[f64; 3]; 2]) -> Geometry {
     Geometry::from_directions(&unit(source), &unit(view)).unwrap()
 }
 
-/// The largest relative error of the values that Mitsuba found.
-fn largest_error(found: &Value, expected: impl Iterator<Item = f64>) -> f64 {
-    let errors = numbers(found).into_iter().zip(expected);
-    errors.map(|(f, e)| (f / e - 1.0).abs()).fold(0.0, f64::max)
-}
-
-/// The relative errors of f_r cos theta of each channel, and of the density.
-fn errors(found: &Value, channels: &[AnyBrdf; 3], pairs: &[[[f64; 3]; 2]]) -> f64 {
+/// The errors of what Mitsuba found over what they may be; at most 1 where all is well. Allowed are
+/// 1e-5 of the value, and to the density what one of its weights may lose to rounding: where 1 - w_s
+/// is small, it is not small beside it. (Directions are drawn by the same rounded weight.)
+fn excess(found: &Value, channels: &[AnyBrdf; 3], pairs: &[[[f64; 3]; 2]]) -> f64 {
+    let geometries: Vec<_> = pairs.iter().map(geometry).collect();
     let mut largest: f64 = 0.0;
-    let samplers = channels.map(|brdf| Sampler::new(&brdf));
+    let mut compare = |found: &Value, expected: &[f64], rounding: f64| {
+        for ((f, e), geometry) in numbers(found).iter().zip(expected).zip(&geometries) {
+            let allowed = 1e-5 * e + rounding * geometry.cos_theta() / PI;
+            largest = largest.max((f - e).abs() / allowed);
+        }
+    };
     for (values, brdf) in found["channels"].as_array().unwrap().iter().zip(channels) {
-        let expected = pairs.iter().map(geometry);
-        let expected = expected.map(|g| brdf.value(&g) * g.cos_theta());
-        largest = largest.max(largest_error(values, expected));
+        let expected = geometries.iter().map(|g| brdf.value(g) * g.cos_theta());
+        compare(values, &expected.collect::<Vec<_>>(), 0.0);
     }
+    let samplers = channels.map(|brdf| Sampler::new(&brdf));
     let density = |[source, view]: &[[f64; 3]; 2]| {
         let [source, view] = [source, view].map(|d| Vector3::from(*d).normalize());
         let of_each = samplers.iter().map(|s| s.pdf(&source, &view).unwrap());
         of_each.sum::<f64>() / 3.0
     };
-    largest.max(largest_error(&found["pdf"], pairs.iter().map(density)))
+    let expected: Vec<_> = pairs.iter().map(density).collect();
+    compare(&found["pdf"], &expected, 4.0 * f64::from(f32::EPSILON));
+    largest
 }
 
 #[test]
@@ -204,9 +209,9 @@ fn values_and_densities_are_those_of_the_core() {
     for variant in [SCALAR, LLVM] {
         for (i, found) in mitsuba(variant, &steps).into_iter().flatten().enumerate() {
             let (plugin, channels) = &cases[i];
-            let error = errors(&found, channels, &pairs[i]);
-            println!("{variant} {}: {error:.1e}", plugin.display());
-            assert!(error < 1e-5, "{variant} {}: {error:e}", plugin.display());
+            let excess = excess(&found, channels, &pairs[i]);
+            println!("{variant} {}: {excess:.2}", plugin.display());
+            assert!(excess < 1.0, "{variant} {}: {excess}", plugin.display());
         }
     }
 }
@@ -291,7 +296,7 @@ fn the_chi_square_test_sees_a_density_that_is_wrong() {
             let name = format!("{family:?}{suffix}").to_lowercase();
             plugins.export(&name, &[brdf(family, [0.3, 0.1, k1, 1.5, 1.3])])
         };
-        let (plugin, wider) = (of_width(0.25, "a"), of_width(0.26, "b"));
+        let (plugin, wider) = (of_width(0.25, "a"), of_width(0.3, "b"));
         steps.push(chi_square(&plugin, &wider, 30.0, None));
     }
     for found in run_chi_square(steps) {

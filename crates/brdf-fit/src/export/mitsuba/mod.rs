@@ -11,7 +11,7 @@ use std::io::{self, Write};
 use super::coating::{Coating, Fitted};
 use super::rgb::COLOURS;
 use super::source::python::drjit;
-use super::source::{NameError, Source};
+use super::source::{Source, check_name};
 use super::target::{ExportError, ExportOptions};
 
 const HEAD: &str = include_str!("head.py");
@@ -24,14 +24,13 @@ pub(super) fn write_plugin(
     options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
-    let name = &options.name;
+    check_name(&options.name)?;
     let lobes = Lobes::of(coating.rgb(options.rgb)?);
-    write!(writer, "{}", HEAD.replace("@NAME@", name))?;
+    write!(writer, "{}", HEAD.replace("@NAME@", &options.name))?;
     for (lobe, fit) in &lobes.distinct {
-        let formulas = formulas(name, lobe, fit)?;
-        write!(writer, "\n{formulas}\n")?;
+        write!(writer, "\n{}\n", drjit(&Source::new(lobe, fit)?))?;
     }
-    lobes.write(name, writer)?;
+    lobes.write(writer)?;
     write!(writer, "\n\n{PLUGIN}")?;
     Ok(())
 }
@@ -39,10 +38,6 @@ pub(super) fn write_plugin(
 /// Writes the scene.
 pub(super) fn write_scene(options: &ExportOptions, writer: &mut dyn Write) -> io::Result<()> {
     writer.write_all(SCENE.replace("@NAME@", &options.name).as_bytes())
-}
-
-fn formulas(name: &str, lobe: &str, fit: &Fitted) -> Result<String, NameError> {
-    Ok(drjit(&Source::new(&format!("{name}_{lobe}"), fit)?))
 }
 
 /// The BRDFs of red, green and blue.
@@ -73,15 +68,14 @@ impl<'a> Lobes<'a> {
     }
 
     /// Writes what of the formulas the plugin calls.
-    fn write(&self, name: &str, writer: &mut dyn Write) -> io::Result<()> {
-        for (lobe, _) in &self.distinct {
-            let of = format!("{name}_{lobe}");
-            write!(
-                writer,
-                "\n{} = Lobe(\n    {of}_of_directions, {of}_KD / {of}_PI, {of}_specular_weight, \
-                 {of}_mirrored_density, {of}_draw\n)\n",
-                lobe.to_uppercase()
-            )?;
+    fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
+        for (of, _) in &self.distinct {
+            writeln!(writer, "\n{} = Lobe(", of.to_uppercase())?;
+            writeln!(writer, "    value={of}_of_directions,")?;
+            writeln!(writer, "    lambertian={of}_KD / {of}_PI,")?;
+            writeln!(writer, "    specular_weight={of}_specular_weight,")?;
+            writeln!(writer, "    mirrored_density={of}_mirrored_density,")?;
+            writeln!(writer, "    draw={of}_draw,\n)")?;
         }
         let lobes = self.distinct.iter().map(|(lobe, _)| lobe.to_uppercase());
         let lobes: Vec<_> = lobes.collect();

@@ -62,7 +62,7 @@ def context(component):
     return ctx
 
 
-def chi2(path, pdf_of, wi, component, tests):
+def chi2(path, pdf_of, wi, component, tests, seed):
     """
     Mitsuba's chi-square test of `sample` against the `pdf` of the same plugin, or of another one.
     """
@@ -78,6 +78,7 @@ def chi2(path, pdf_of, wi, component, tests):
         pdf_func=functions(pdf_of)[1],
         sample_dim=3,
         ires=16,
+        seed=seed,
     )
     accepted = bool(test.run(0.01, tests, quiet=True))
     return {"accepted": accepted, "p": float(test.p_value), "words": test.messages}
@@ -90,15 +91,13 @@ def weights(path, wi, count, component):
     scalar = mi.variant().startswith("scalar")
     sampler.seed(1, 1 if scalar else count)
     si, ctx = interaction(mi.Vector3f(wi)), context(component)
-    drawn = [[], [], []]
+    drawn = []
     for _ in range(count if scalar else 1):
         _, weight = material.sample(ctx, si, sampler.next_1d(), sampler.next_2d())
-        for channel, values in zip(drawn, weight):
-            channel += numbers(values)
-    mean = [sum(values) / count for values in drawn]
-    square = [sum(v * v for v in values) / count for values in drawn]
-    error = [(max(s - m * m, 0) / count) ** 0.5 for s, m in zip(square, mean)]
-    return {"mean": mean, "error": error}
+        drawn.append(np.reshape(np.array(weight), (3, -1)))
+    drawn = np.concatenate(drawn, axis=1)
+    error = drawn.std(axis=1) / count**0.5
+    return {"mean": drawn.mean(axis=1).tolist(), "error": error.tolist()}
 
 
 def picture(path, parts):

@@ -250,8 +250,9 @@ fn chi_square(plugin: &Path, pdf_of: &Path, psi_deg: f64, component: Option<u32>
 /// Runs chi-square tests at a level of 1 % for all of them together.
 fn run_chi_square(mut steps: Vec<Value>) -> Vec<Value> {
     let tests = steps.len();
-    for step in &mut steps {
+    for (seed, step) in steps.iter_mut().enumerate() {
         step["tests"] = json!(tests);
+        step["seed"] = json!(seed);
     }
     let found = mitsuba(LLVM, &steps).unwrap_or_default();
     for (step, found) in steps.iter().zip(&found) {

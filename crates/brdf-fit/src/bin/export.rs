@@ -18,7 +18,7 @@ struct Arguments {
     #[arg(value_name = "FILE")]
     fits: PathBuf,
 
-    /// The form: json
+    /// The form: json; source code: c, glsl, wgsl, osl, python
     #[arg(long, value_name = "FORMAT")]
     to: Target,
 

@@ -6,4 +6,5 @@ mod source;
 mod target;
 
 pub use coating::{Coating, CoatingError, Fitted};
+pub use source::{Language, NameError};
 pub use target::{ExportError, ExportOptions, Target, export};

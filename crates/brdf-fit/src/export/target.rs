@@ -11,13 +11,20 @@ use super::source::{Language, NameError, Source};
 pub enum Target {
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
-    /// A module of Python, over arrays of NumPy.
-    Python,
+    /// Source code.
+    Source(Language),
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 2] = [(Self::Json, "json"), (Self::Python, "python")];
+    pub const NAMED: [(Self, &str); 6] = [
+        (Self::Json, "json"),
+        (Self::Source(Language::C), "c"),
+        (Self::Source(Language::Glsl), "glsl"),
+        (Self::Source(Language::Wgsl), "wgsl"),
+        (Self::Source(Language::Osl), "osl"),
+        (Self::Source(Language::Python), "python"),
+    ];
 }
 
 impl FromStr for Target {
@@ -64,9 +71,9 @@ pub fn export(
 ) -> Result<(), ExportError> {
     match target {
         Target::Json => coating.write(writer)?,
-        Target::Python => {
+        Target::Source(language) => {
             let source = Source::new(&options.name, coating.only()?)?;
-            writer.write_all(source.text(Language::Python).as_bytes())?;
+            writer.write_all(source.text(language).as_bytes())?;
         }
     }
     Ok(())

@@ -38,13 +38,40 @@ pub(super) trait Dialect {
     }
 
     /// The words before the name of a local number.
-    fn local(&self) -> &'static str;
+    fn local(&self) -> String;
 
     /// The words before the name of a local truth.
     fn condition(&self) -> &'static str;
 
     /// The lines that return a vector.
     fn return_vector(&self, components: &[String]) -> Vec<String>;
+}
+
+/// The first line of a function in a language that has kinds before names, the result's too.
+pub(super) fn typed_head(name: &str, function: &Function, real: &str, vector: &str) -> String {
+    let kind = |is_vector| if is_vector { vector } else { real };
+    let parameters = function.parameters.iter();
+    let parameters = parameters.map(|p| format!("{} {}", kind(p.is_vector), p.name));
+    let parameters = parameters.collect::<Vec<_>>().join(", ");
+    format!("{} {name}({parameters}) {{", kind(function.returns_vector))
+}
+
+/// `select` and `both` by the operators of C.
+pub(super) fn with_operators(function: &str, arguments: &[String]) -> Option<String> {
+    match (function, arguments) {
+        ("select", [condition, then, otherwise]) => {
+            Some(format!("({condition} ? {then} : {otherwise})"))
+        }
+        ("both", [a, b]) => Some(format!("({a} && {b})")),
+        _ => None,
+    }
+}
+
+/// A call of a function that has the same name in the formulas and in the languages of shaders.
+pub(super) fn same_call(function: &str, arguments: &[String]) -> Option<String> {
+    let same = ["sqrt", "exp", "log", "sin", "cos", "abs", "min", "max"];
+    let call = || format!("{function}({})", arguments.join(", "));
+    same.contains(&function).then(call)
 }
 
 /// The functions.

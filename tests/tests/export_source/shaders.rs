@@ -1,21 +1,14 @@
 //! GLSL and WGSL: naga reads, validates and translates them, and their functions have the values of
 //! the model in `f32`.
 
-use brdf_core::{AnyBrdf, Sampler};
+use brdf_core::AnyBrdf;
 use brdf_fit::export::Language;
 use naga::Module;
 
-use crate::coatings::{Point, brdfs, geometry, geometry_of_angles, points, source, wide};
+use crate::coatings::{brdfs, source};
 use crate::interpreter::{Interpreter, Value};
+use crate::points::{Errors, Found, Point, check_single, narrow, points};
 use crate::shader::{from_glsl, from_wgsl};
-
-/// The largest relative error in `f32`, up to 85 deg and for k1 from 0.01 on: what the batch of the
-/// model promises.
-const SINGLE: f64 = 1e-5;
-
-/// The largest relative error of the density: where w_s is nearly 1, what is left of 1 has fewer
-/// digits. The directions are drawn with the same w_s, so that no estimate suffers.
-const DENSITY: f64 = 2e-4;
 
 /// A shader that calls what is for the user, without an output parameter.
 const WGSL_MAIN: &str = "
@@ -64,64 +57,34 @@ fn glsl(brdf: &AnyBrdf) -> Module {
     ))
 }
 
-/// The largest relative errors of f_r of directions, of angles, and of the density, and the largest
-/// distance of a sampled direction.
-fn errors(module: &Module, brdf: &AnyBrdf, points: &[Point]) -> [f64; 4] {
+/// What the functions of a shader give.
+fn found(module: &Module, points: &[Point]) -> Vec<Found> {
     let mut shader = Interpreter::new(module);
-    let sampler = Sampler::new(brdf);
-    let mut worst = [0.0_f64; 4];
-    for point in points {
-        let [source, view, numbers] = [point.source, point.view, point.numbers].map(Value::vector);
-        let mut value = |name, arguments: &[Value]| f64::from(shader.call(name, arguments).float());
-        let eval = value("paint_eval", &[source.clone(), view.clone()]);
-        let of_angles = value("paint_eval_angles", &point.angles.map(Value::Float));
-        let pdf = value("paint_pdf", &[source.clone(), view]);
-        let expected_pdf = sampler.pdf(&wide(point.source), &wide(point.view));
-        let relative = |value: f64, exact: f64| (value / exact - 1.0).abs();
-        let found = [
-            relative(eval, brdf.value(&geometry(point))),
-            relative(of_angles, brdf.value(&geometry_of_angles(point))),
-            relative(pdf, expected_pdf.expect("directions")),
-            distance(&shader.call("sampled", &[source, numbers]), &sampler, point),
-        ];
-        worst = std::array::from_fn(|i| worst[i].max(found[i]));
-    }
-    worst
-}
-
-/// The distance of a sampled direction from that of the sampler. Density and weight go with the
-/// direction; where that is below the surface, they are 0.
-fn distance(sampled: &Value, sampler: &Sampler, point: &Point) -> f64 {
-    let [x, y, z, density, weight] = [0, 1, 2, 3, 4].map(|i| sampled.parts()[i].float());
-    let expected = sampler.sample(&wide(point.source), point.numbers.map(f64::from));
-    let Some(expected) = expected.expect("a source") else {
-        assert!(z <= 1e-6 && (z > 0.0 || (density, weight) == (0.0, 0.0)));
-        return 0.0;
+    let at = |point: &Point| {
+        let [angles, source, view, numbers] =
+            [point.angles, point.source, point.view, point.numbers].map(narrow);
+        let [source, view, numbers] = [source, view, numbers].map(Value::vector);
+        let of_angles = shader.call("paint_eval_angles", &angles.map(Value::Float));
+        let of_directions = shader.call("paint_eval", &[source.clone(), view.clone()]);
+        let pdf = shader.call("paint_pdf", &[source.clone(), view]);
+        let sampled = shader.call("sampled", &[source, numbers]);
+        let [x, y, z, density, weight] = [0, 1, 2, 3, 4].map(|i| sampled.parts()[i].float());
+        let [of_angles, of_directions, pdf] = [of_angles, of_directions, pdf].map(|v| v.float());
+        let numbers = [of_angles, of_directions, pdf, x, y, z, density, weight];
+        Found::from_numbers(numbers.map(f64::from))
     };
-    let drawn = wide([x, y, z]);
-    assert!(
-        (f64::from(weight) / expected.weight - 1.0).abs() < 1e-3,
-        "{weight} {expected:?}"
-    );
-    assert!(
-        (f64::from(density) / expected.pdf - 1.0).abs() < 1e-3,
-        "{density} {expected:?}"
-    );
-    (drawn - expected.direction).norm()
+    points.iter().map(at).collect()
 }
 
 #[test]
 fn naga_reads_and_translates_what_has_the_values_of_the_model() {
-    println!("largest relative error of eval, eval_angles, pdf, and distance of a sampled view");
     for brdf in brdfs() {
         let k1 = brdf.parameters().k1;
-        let points = points(k1, 100);
+        let points: Vec<_> = points(k1, 60).into_iter().map(Point::single).collect();
         for (language, module) in [("WGSL", wgsl(&brdf)), ("GLSL", glsl(&brdf))] {
-            let found = errors(&module, &brdf, &points);
-            let words = found.map(|error| format!("{error:.1e}")).join(" ");
-            println!("{language} {:?} k1 = {k1}: {words}", brdf.family());
-            assert!(found[0] <= SINGLE && found[1] <= SINGLE && found[3] <= SINGLE);
-            assert!(found[2] <= DENSITY);
+            let errors = Errors::largest(&brdf, &points, &found(&module, &points));
+            println!("{language} {:?} k1 = {k1}: {errors:?}", brdf.family());
+            check_single(&errors);
         }
     }
 }

@@ -143,6 +143,10 @@ impl Dialect for C<'_> {
         format!("static inline {result} {name}({parameters}) {{")
     }
 
+    fn unused(&self, parameter: &str) -> String {
+        format!("    (void){parameter};\n")
+    }
+
     fn local(&self) -> String {
         format!("const {}_real ", self.name)
     }

@@ -32,6 +32,11 @@ pub(super) trait Dialect {
     /// The first line of a function.
     fn head(&self, function: &Function) -> String;
 
+    /// What is said of a parameter that a function makes no use of.
+    fn unused(&self, _parameter: &str) -> String {
+        String::new()
+    }
+
     /// What ends a function.
     fn tail(&self) -> &'static str {
         "}\n"
@@ -89,10 +94,14 @@ fn function<D: Dialect>(dialect: &D, function: &Function) -> String {
     let mut text = D::BEFORE_FUNCTION.to_owned();
     text += &comment::<D>(&function.comment.join("\n"));
     let _ = writeln!(text, "{}", dialect.head(function));
-    for line in function.body.iter().flat_map(|one| statement(dialect, one)) {
-        let _ = writeln!(text, "    {line}");
+    let statements = function.body.iter().flat_map(|one| statement(dialect, one));
+    let body: String = statements.map(|line| format!("    {line}\n")).collect();
+    for parameter in &function.parameters {
+        if !body.contains(parameter.name) {
+            text += &dialect.unused(parameter.name);
+        }
     }
-    text + dialect.tail()
+    text + &body + dialect.tail()
 }
 
 fn statement<D: Dialect>(dialect: &D, statement: &Statement) -> Vec<String> {

@@ -39,7 +39,7 @@ static double points[1000][12];
         printf("%.17g %.17g %.17g ", (double)NAME##_eval(p[0], p[1], p[2]), \
                (double)NAME##_eval_directions(p + 3, p + 6), (double)NAME##_pdf(p + 3, p + 6)); \
         printf("%.17g %.17g %.17g ", (double)view[0], (double)view[1], (double)view[2]); \
-        printf("%.17g %.17g\\n", (double)density, weight); \
+        printf("%.17g %.17g\n", (double)density, weight); \
     }
 
 int main(void) {
@@ -116,9 +116,12 @@ fn numbers(program: &Path, input: impl IntoIterator<Item = f64>) -> Vec<f64> {
         .expect("a thread")
         .expect("the input is taken");
     let text = String::from_utf8(output.stdout).expect("text");
-    text.split_whitespace()
-        .map(|word| word.parse().expect("a number"))
-        .collect()
+    // A sign before what is no number is the library's whim.
+    let words = text.split_whitespace().map(|word| match word {
+        "-nan" => f64::NAN,
+        _ => word.parse().expect("a number"),
+    });
+    words.collect()
 }
 
 /// What the sources of some coatings give at points, all in one program.

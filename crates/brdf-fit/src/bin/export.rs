@@ -18,7 +18,8 @@ struct Arguments {
     #[arg(value_name = "FILE")]
     fits: PathBuf,
 
-    /// The form: json, or mitsuba (a plugin, and a scene beside it: with -o x.py, x.xml)
+    /// The form: json; source code: c, glsl, wgsl, osl, python; mitsuba (a plugin, and a scene
+    /// beside it: with -o x.py, x.xml)
     #[arg(long, value_name = "FORMAT")]
     to: Target,
 

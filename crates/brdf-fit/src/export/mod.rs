@@ -9,4 +9,5 @@ mod target;
 
 pub use coating::{Coating, CoatingError, Fitted};
 pub use rgb::{COLOURS, PRIMARIES_UM, REACH_UM};
+pub use source::{Language, NameError};
 pub use target::{ExportError, ExportOptions, Target, export, export_beside};

@@ -14,15 +14,19 @@ pub enum Target {
     Json,
     /// Mitsuba 3: a BSDF plugin in Python, and a scene beside it.
     Mitsuba,
-    /// A module of Python, over arrays of NumPy.
-    Python,
+    /// Source code.
+    Source(Language),
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 3] = [
+    pub const NAMED: [(Self, &str); 7] = [
         (Self::Json, "json"),
-        (Self::Python, "python"),
+        (Self::Source(Language::C), "c"),
+        (Self::Source(Language::Glsl), "glsl"),
+        (Self::Source(Language::Wgsl), "wgsl"),
+        (Self::Source(Language::Osl), "osl"),
+        (Self::Source(Language::Python), "python"),
         (Self::Mitsuba, "mitsuba"),
     ];
 
@@ -79,9 +83,9 @@ pub fn export(
     match target {
         Target::Json => coating.write(writer)?,
         Target::Mitsuba => mitsuba::write_plugin(coating, options, writer)?,
-        Target::Python => {
+        Target::Source(language) => {
             let source = Source::new(&options.name, coating.only()?)?;
-            writer.write_all(source.text(Language::Python).as_bytes())?;
+            writer.write_all(source.text(language).as_bytes())?;
         }
     }
     Ok(())

@@ -32,19 +32,51 @@ pub(super) trait Dialect {
     /// The first line of a function.
     fn head(&self, function: &Function) -> String;
 
+    /// What is said of a parameter that a function makes no use of.
+    fn unused(&self, _parameter: &str) -> String {
+        String::new()
+    }
+
     /// What ends a function.
     fn tail(&self) -> &'static str {
         "}\n"
     }
 
     /// The words before the name of a local number.
-    fn local(&self) -> &'static str;
+    fn local(&self) -> String;
 
     /// The words before the name of a local truth.
     fn condition(&self) -> &'static str;
 
     /// The lines that return a vector.
     fn return_vector(&self, components: &[String]) -> Vec<String>;
+}
+
+/// The first line of a function in a language that has kinds before names, the result's too.
+pub(super) fn typed_head(name: &str, function: &Function, real: &str, vector: &str) -> String {
+    let kind = |is_vector| if is_vector { vector } else { real };
+    let parameters = function.parameters.iter();
+    let parameters = parameters.map(|p| format!("{} {}", kind(p.is_vector), p.name));
+    let parameters = parameters.collect::<Vec<_>>().join(", ");
+    format!("{} {name}({parameters}) {{", kind(function.returns_vector))
+}
+
+/// `select` and `both` by the operators of C.
+pub(super) fn with_operators(function: &str, arguments: &[String]) -> Option<String> {
+    match (function, arguments) {
+        ("select", [condition, then, otherwise]) => {
+            Some(format!("({condition} ? {then} : {otherwise})"))
+        }
+        ("both", [a, b]) => Some(format!("({a} && {b})")),
+        _ => None,
+    }
+}
+
+/// A call of a function that has the same name in the formulas and in the languages of shaders.
+pub(super) fn same_call(function: &str, arguments: &[String]) -> Option<String> {
+    let same = ["sqrt", "exp", "log", "sin", "cos", "abs", "min", "max"];
+    let call = || format!("{function}({})", arguments.join(", "));
+    same.contains(&function).then(call)
 }
 
 /// The functions.
@@ -62,10 +94,14 @@ fn function<D: Dialect>(dialect: &D, function: &Function) -> String {
     let mut text = D::BEFORE_FUNCTION.to_owned();
     text += &comment::<D>(&function.comment.join("\n"));
     let _ = writeln!(text, "{}", dialect.head(function));
-    for line in function.body.iter().flat_map(|one| statement(dialect, one)) {
-        let _ = writeln!(text, "    {line}");
+    let statements = function.body.iter().flat_map(|one| statement(dialect, one));
+    let body: String = statements.map(|line| format!("    {line}\n")).collect();
+    for parameter in &function.parameters {
+        if !body.contains(parameter.name) {
+            text += &dialect.unused(parameter.name);
+        }
     }
-    text + dialect.tail()
+    text + &body + dialect.tail()
 }
 
 fn statement<D: Dialect>(dialect: &D, statement: &Statement) -> Vec<String> {

@@ -2,22 +2,34 @@
 //! renderers and of those who compute. The formulas are written once, in [`formula`]; each language
 //! prints them.
 
+mod c;
 mod dialect;
 mod expression;
 mod formula;
+mod glsl;
+mod osl;
 pub(super) mod python;
+mod wgsl;
 
 use std::f64::consts::PI;
-use std::fmt::Write as _;
 
-use brdf_core::{Family, Sampler};
+use brdf_core::{AnyBrdf, Family, Sampler};
 
 use super::Fitted;
-use dialect::{Dialect, comment};
+use dialect::{Dialect, comment, print};
+use formula::{evaluation, sampling};
 
 /// A language.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Language {
+pub enum Language {
+    /// C99.
+    C,
+    /// GLSL.
+    Glsl,
+    /// WGSL.
+    Wgsl,
+    /// The Open Shading Language.
+    Osl,
     /// Python with NumPy.
     Python,
 }
@@ -28,6 +40,8 @@ pub(super) struct Source<'a> {
     name: &'a str,
     /// The BRDF, and where it comes from.
     fitted: &'a Fitted,
+    /// The table of the sampler.
+    specular_weights: Vec<f64>,
 }
 
 /// Why names cannot begin so.
@@ -37,6 +51,24 @@ pub(super) struct Source<'a> {
      them, the first a letter, not gl or gl_..."
 )]
 pub struct NameError(String);
+
+/// What a language has of its own in a file, with NAME for the first word of all names and a line
+/// VALUES for the table of the sampler.
+struct Parts {
+    /// The functions for the user, as comment.
+    conventions: &'static str,
+    /// What stands before the constants.
+    opening: &'static str,
+    /// Constants: `OUTSIDE`, the value outside the domain, and `BELOW_ONE`, the largest number below 1.
+    constants: &'static str,
+    /// The function `specular_weight`.
+    specular_weight: &'static str,
+    /// What stands behind the functions.
+    closing: &'static str,
+}
+
+/// The components of a vector.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// What the table of the sampler is.
 const SPECULAR_WEIGHT: &str = "\
@@ -60,14 +92,64 @@ impl<'a> Source<'a> {
     /// A BRDF, and the first word of all names; see [`check_name`].
     pub(super) fn new(name: &'a str, fitted: &'a Fitted) -> Result<Self, NameError> {
         check_name(name)?;
-        Ok(Self { name, fitted })
+        let sampler = Sampler::new(&fitted.brdf);
+        Ok(Self {
+            name,
+            fitted,
+            specular_weights: sampler.specular_weights().to_vec(),
+        })
     }
 
     /// A file.
     pub(super) fn text(&self, language: Language) -> String {
         match language {
+            Language::C => c::header(self),
+            Language::Glsl => glsl::snippet(self),
+            Language::Wgsl => wgsl::snippet(self),
+            Language::Osl => osl::shader(self),
             Language::Python => python::numpy(self),
         }
+    }
+
+    /// A file of a language.
+    fn file<D: Dialect>(&self, dialect: &D, parts: &Parts) -> String {
+        let mut text = comment::<D>(&self.heading());
+        text += &comment::<D>(&self.filled(parts.conventions));
+        text += &self.filled(parts.opening);
+        text += &self.functions(dialect, parts);
+        text + &self.filled(parts.closing)
+    }
+
+    /// Constants and functions.
+    fn functions<D: Dialect>(&self, dialect: &D, parts: &Parts) -> String {
+        let mut text = constants(dialect, &self.fitted.brdf);
+        text += &self.filled(parts.constants);
+        text += &print(dialect, &evaluation(self.fitted.brdf.family()));
+        text += D::BEFORE_FUNCTION;
+        text += &comment::<D>(SPECULAR_WEIGHT);
+        text += &self.filled(parts.specular_weight);
+        text + &print(dialect, &sampling())
+    }
+
+    /// A part with the name and the table.
+    fn filled(&self, part: &str) -> String {
+        let mut text = String::new();
+        for line in part.split_inclusive('\n') {
+            match line.strip_suffix("VALUES\n") {
+                Some(indent) => text += &self.values(indent),
+                None => text += &line.replace("NAME", self.name),
+            }
+        }
+        text
+    }
+
+    /// The table of the sampler, five entries a line.
+    fn values(&self, indent: &str) -> String {
+        let lines = self.specular_weights.chunks(5).map(|line| {
+            let numbers: Vec<_> = line.iter().map(|weight| format!("{weight:?}")).collect();
+            indent.to_owned() + &numbers.join(", ")
+        });
+        lines.collect::<Vec<_>>().join(",\n") + "\n"
     }
 
     /// What stands at the head of a file.
@@ -94,16 +176,6 @@ impl<'a> Source<'a> {
              {MODEL}"
         )
     }
-
-    /// The table of the sampler, five entries a line.
-    fn weights(&self, indent: &str) -> String {
-        let weights = Sampler::new(&self.fitted.brdf)
-            .specular_weights()
-            .map(|w| format!("{w:?}"));
-        let lines = weights.chunks(5).map(|line| line.join(", "));
-        let lines: Vec<_> = lines.map(|line| format!("{indent}{line}")).collect();
-        lines.join(",\n") + "\n"
-    }
 }
 
 const MODEL: &str = "\
@@ -115,9 +187,25 @@ incidence angle on it; all angles are in radians. Directions are unit vectors aw
 z along its normal.
 ";
 
+/// The names that functions for the user have.
+fn in_the_open(name: &str) -> &str {
+    match name {
+        "density" => "pdf",
+        _ => name,
+    }
+}
+
+/// The names that they have in shaders, where directions are what there is.
+fn of_shaders(name: &str) -> &str {
+    match name {
+        "of_directions" => "eval",
+        "of_angles" => "eval_angles",
+        _ => in_the_open(name),
+    }
+}
+
 /// The definitions of the parameters, and of pi.
-fn constants<D: Dialect>(dialect: &D, source: &Source) -> String {
-    let brdf = &source.fitted.brdf;
+fn constants<D: Dialect>(dialect: &D, brdf: &AnyBrdf) -> String {
     let at = brdf.model_parameters();
     let mut text = String::new();
     let mut add = |about: &str, name, value| {
@@ -131,9 +219,7 @@ fn constants<D: Dialect>(dialect: &D, source: &Source) -> String {
         at.kd,
     );
     add("Width of the facet distribution.", "K1", at.k1);
-    let mut index = String::new();
-    let _ = write!(
-        index,
+    let index = format!(
         "Refractive index n = {:?}, less 1: that keeps its digits.",
         at.n
     );

@@ -1,8 +1,8 @@
 //! Python, over arrays of NumPy or of Dr.Jit.
 
-use super::dialect::{Dialect, comment, print};
-use super::formula::{Function, evaluation, sampling};
-use super::{Source, constants};
+use super::dialect::Dialect;
+use super::formula::Function;
+use super::{Parts, Source};
 
 /// The module whose functions are called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,22 +15,16 @@ enum Module {
 
 /// A file of functions over arrays of NumPy.
 pub(super) fn numpy(source: &Source) -> String {
-    let name = source.name;
-    let mut text = comment::<Python>(&source.heading());
-    text += &comment::<Python>(&NUMPY_CONVENTIONS.replace("NAME", name));
-    text += "\nimport numpy as np\n\n";
-    text += &functions(source, Module::NumPy);
-    text + &NUMPY_WRAPPERS.replace("NAME", name)
+    let dialect = Python {
+        name: source.name,
+        module: Module::NumPy,
+    };
+    source.file(&dialect, &NUMPY)
 }
 
-/// Functions over numbers and arrays of Dr.Jit, below the words about them.
-pub(in crate::export) fn drjit(source: &Source) -> String {
-    comment::<Python>(&source.heading()) + "\n" + &functions(source, Module::DrJit)
-}
-
-/// Constants and functions without a file about them, their names beginning with that of the
-/// source, so that several fit into one file. For the user there are, directions being sequences
-/// of their three components (z along the surface normal) and angles in radians:
+/// Functions over numbers and arrays of Dr.Jit, below the words about them, their names beginning
+/// with that of the source, so that several fit into one file. For the user there are, directions
+/// being sequences of their three components (z along the surface normal) and angles in radians:
 ///
 /// ```text
 /// NAME_of_angles(psi, theta, phi)     f_r in 1/sr
@@ -40,20 +34,30 @@ pub(in crate::export) fn drjit(source: &Source) -> String {
 /// NAME_draw(source, numbers)          a view from three random numbers
 /// NAME_weight(source, view)           f_r cos theta / density
 /// ```
-fn functions(source: &Source, module: Module) -> String {
+pub(in crate::export) fn drjit(source: &Source) -> String {
     let dialect = Python {
         name: source.name,
-        module,
+        module: Module::DrJit,
     };
-    let mut text = constants(&dialect, source);
-    text += &dialect.constant("OUTSIDE", f64::NAN);
-    text += &dialect.constant("BELOW_ONE", dialect.below_one());
-    text += &dialect.weights(source);
-    let family = source.fitted.brdf.family();
-    text += &print(&dialect, &evaluation(family));
-    text += &dialect.specular_weight();
-    text + &print(&dialect, &sampling())
+    source.file(&dialect, &DR_JIT)
 }
+
+const NUMPY: Parts = Parts {
+    conventions: NUMPY_CONVENTIONS,
+    opening: "\nimport numpy as np\n\n",
+    constants: NUMPY_CONSTANTS,
+    specular_weight: NUMPY_SPECULAR_WEIGHT,
+    closing: NUMPY_WRAPPERS,
+};
+
+/// Of a file of this the head and the end are written elsewhere.
+const DR_JIT: Parts = Parts {
+    conventions: "",
+    opening: "\n",
+    constants: DR_JIT_CONSTANTS,
+    specular_weight: DR_JIT_SPECULAR_WEIGHT,
+    closing: "",
+};
 
 const NUMPY_CONVENTIONS: &str = "
 NAME_eval(psi, theta, phi)           f_r in 1/sr, angles in radians; NaN outside the domain
@@ -62,6 +66,37 @@ NAME_pdf(source, view)               density of the views that are sampled, in 1
 NAME_sample(source, numbers)         view, pdf, f_r cos theta / pdf, from three numbers of [0, 1)
 
 All take numbers or arrays, which are broadcast; vectors are along the last axis.";
+
+const NUMPY_CONSTANTS: &str = "\
+NAME_OUTSIDE = np.nan
+NAME_BELOW_ONE = 0.9999999999999999
+NAME_SPECULAR_WEIGHTS = [
+    VALUES
+]
+";
+
+const NUMPY_SPECULAR_WEIGHT: &str = "\
+def NAME_specular_weight(cos_psi):
+    return np.interp(16.0 * np.sqrt(cos_psi), np.arange(17.0), NAME_SPECULAR_WEIGHTS)
+";
+
+const DR_JIT_CONSTANTS: &str = "\
+NAME_OUTSIDE = dr.nan
+NAME_BELOW_ONE = 0.99999994
+NAME_SPECULAR_WEIGHTS = [
+    VALUES
+]
+";
+
+/// As the sum of hat functions: without an index it serves numbers and arrays.
+const DR_JIT_SPECULAR_WEIGHT: &str = "\
+def NAME_specular_weight(cos_psi):
+    position = 16.0 * dr.sqrt(cos_psi)
+    weight = 0.0
+    for entry, value in enumerate(NAME_SPECULAR_WEIGHTS):
+        weight += value * dr.maximum(0.0, 1.0 - dr.abs(position - entry))
+    return weight
+";
 
 const NUMPY_WRAPPERS: &str = r#"
 
@@ -111,42 +146,6 @@ impl Python<'_> {
             Module::DrJit => "dr",
         }
     }
-
-    /// The largest number below 1: of `f64`, or of `f32`, in which Dr.Jit mostly is.
-    fn below_one(&self) -> f64 {
-        match self.module {
-            Module::NumPy => 1.0 - 0.5 * f64::EPSILON,
-            Module::DrJit => f64::from(1.0 - 0.5 * f32::EPSILON),
-        }
-    }
-
-    fn weights(&self, source: &Source) -> String {
-        let name = self.named("SPECULAR_WEIGHTS");
-        format!("{name} = [\n{}]\n", source.weights("    "))
-    }
-
-    /// The table between its entries.
-    fn specular_weight(&self) -> String {
-        let about = comment::<Self>(super::SPECULAR_WEIGHT);
-        let (function, table) = (
-            self.named("specular_weight"),
-            self.named("SPECULAR_WEIGHTS"),
-        );
-        let body = match self.module {
-            Module::NumPy => {
-                format!("    return np.interp(16.0 * np.sqrt(cos_psi), np.arange(17.0), {table})\n")
-            }
-            // The sum of the hat functions of the entries: without an index it serves numbers and
-            // arrays.
-            Module::DrJit => format!(
-                "    position = 16.0 * dr.sqrt(cos_psi)\n    weight = 0.0\n    \
-                 for entry, value in enumerate({table}):\n        \
-                 weight += value * dr.maximum(0.0, 1.0 - dr.abs(position - entry))\n    \
-                 return weight\n"
-            ),
-        };
-        format!("\n\n{about}def {function}(cos_psi):\n{body}")
-    }
 }
 
 impl Dialect for Python<'_> {
@@ -182,7 +181,6 @@ impl Dialect for Python<'_> {
     fn constant(&self, name: &str, value: f64) -> String {
         let name = self.named(name);
         match self.module {
-            _ if value.is_nan() => format!("{name} = {}.nan\n", self.module()),
             // A number of NumPy, which may be divided by 0.
             Module::NumPy => format!("{name} = np.float64({value:?})\n"),
             Module::DrJit => format!("{name} = {value:?}\n"),
@@ -202,8 +200,8 @@ impl Dialect for Python<'_> {
         ""
     }
 
-    fn local(&self) -> &'static str {
-        ""
+    fn local(&self) -> String {
+        String::new()
     }
 
     fn condition(&self) -> &'static str {
@@ -235,7 +233,7 @@ mod tests {
                 psi_max_deg: 70.0,
             };
             let source = Source::new("red", &fitted).unwrap();
-            let [numpy, drjit] = [Module::NumPy, Module::DrJit].map(|m| functions(&source, m));
+            let (numpy, drjit) = (numpy(&source), drjit(&source));
             assert!(numpy.contains("np.where(") && !numpy.contains("dr."));
             assert!(drjit.contains("dr.select(") && !drjit.contains("np."));
         }

@@ -1,0 +1,11 @@
+//! The exported sources, each checked by what no one here wrote: naga for the languages of shaders,
+//! a C compiler, NumPy, and the compiler of the Open Shading Language.
+
+mod c;
+mod coatings;
+mod interpreter;
+mod numpy;
+mod points;
+mod reference;
+mod shader;
+mod shaders;

@@ -40,12 +40,17 @@ def vectors(directions):
     return [mi.Vector3f([mi.Float(column) for column in zip(*directions)])]
 
 
-def points(path, wi, wo):
-    """f_r cos theta of the channels and the density, from `eval` and `pdf` and from `eval_pdf`."""
+def points(path, wi, wo, wavelengths=()):
+    """
+    f_r cos theta of the channels and the density, from `eval` and `pdf` and from `eval_pdf`. In
+    spectral variants the channels are those of the wavelengths, in nm.
+    """
     _, material = bsdf(path)
-    ctx, found = mi.BSDFContext(), {"channels": [[], [], []], "pdf": []}
+    ctx, found = mi.BSDFContext(), {"channels": [[] for _ in mi.Spectrum(0)], "pdf": []}
     for source, view in zip(vectors(wi), vectors(wo)):
         si = interaction(source)
+        if mi.is_spectral:
+            si.wavelengths = mi.Spectrum(wavelengths)
         value, pdf = material.eval(ctx, si, view), material.pdf(ctx, si, view)
         both = material.eval_pdf(ctx, si, view)
         assert dr.all(dr.all(both[0] == value) & (both[1] == pdf))

@@ -217,6 +217,42 @@ fn values_and_densities_are_those_of_the_core() {
 }
 
 #[test]
+fn mono_is_the_luminance_and_a_spectrum_goes_through_the_colours() {
+    let plugins = Plugins::new();
+    let plugin = plugins.export("colourful", &colourful());
+    let pair = [direction(0.5, 0.0), direction(0.7, 3.0)];
+    let geometry = geometry(&pair);
+    let [red, green, blue] = colourful().map(|brdf| brdf.value(&geometry) * geometry.cos_theta());
+    let luminance = 0.212_671 * red + 0.715_160 * green + 0.072_169 * blue;
+    let spectrum = vec![blue, blue, green, 0.5 * (green + red)];
+    let step = json!({
+        "do": "points", "path": plugin, "wi": [pair[0]], "wo": [pair[1]],
+        "wavelengths": [400.0, 464.0, 549.0, 580.0],
+    });
+    let cases = [
+        ("llvm_ad_mono", vec![luminance]),
+        ("scalar_spectral", spectrum.clone()),
+        ("llvm_ad_spectral", spectrum),
+    ];
+    for (variant, expected) in cases {
+        for found in mitsuba(variant, std::slice::from_ref(&step))
+            .into_iter()
+            .flatten()
+        {
+            let channels = found["channels"].as_array().unwrap();
+            assert_eq!(channels.len(), expected.len(), "{variant}");
+            for (channel, expected) in channels.iter().zip(&expected) {
+                let value = numbers(channel)[0];
+                assert!(
+                    (value / expected - 1.0).abs() < 1e-5,
+                    "{variant}: {value} {expected}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
 fn nothing_is_reflected_from_or_to_below_the_surface() {
     let plugins = Plugins::new();
     let plugin = plugins.export("colourful", &colourful());

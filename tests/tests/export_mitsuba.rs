@@ -23,7 +23,7 @@ const LLVM: &str = "llvm_ad_rgb";
 /// Red, green and blue: the wavelengths of a made-up coating in micrometres.
 const WAVELENGTHS_UM: [f64; 3] = [0.62, 0.55, 0.46];
 
-/// Part of the exported plugins of a test, each under a name of its own.
+/// The exported plugins of a test, each under a name of its own.
 struct Plugins {
     folder: TempDir,
 }
@@ -450,8 +450,13 @@ fn without_arguments_the_plugin_renders_what_is_beside_it() {
         return;
     };
     assert!(output.status.success(), "{}", stderr(&output));
-    let picture = fs::read(plugin.with_extension("png")).unwrap();
-    assert!(picture.starts_with(b"\x89PNG"));
+    let picture = plugin.with_extension("png");
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains(&format!("written: {}", picture.display())),
+        "{said}"
+    );
+    assert!(fs::read(picture).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]

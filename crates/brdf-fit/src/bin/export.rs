@@ -40,7 +40,7 @@ struct Arguments {
     #[arg(long, value_name = "RED,GREEN,BLUE", value_parser = three, conflicts_with = "wavelength")]
     rgb: Option<[f64; 3]>,
 
-    /// First word of the names in source code
+    /// First word of the names in source code, and the type of the material in Mitsuba
     #[arg(long, value_name = "WORD", default_value = "brdf")]
     name: String,
 

@@ -51,7 +51,7 @@ impl FromStr for Target {
 /// What a form may be told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportOptions {
-    /// The first word of the names in source code.
+    /// The first word of the names in source code, and the type of the material in Mitsuba.
     pub name: String,
     /// The largest error of a table: of f_r interpolated between its entries, relative.
     pub tolerance: f64,

@@ -84,3 +84,73 @@ impl<'a> Lobes<'a> {
         writeln!(writer, "CHANNELS = [{}]", channels.join(", "))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::{AnyBrdf, Family, ModelParameters, Parameters};
+
+    use super::*;
+
+    fn fitted(file: &str, kd: f64) -> Fitted {
+        let at = ModelParameters::three(Parameters::new(0.3, kd, 0.2).unwrap(), 1.5);
+        Fitted {
+            file: file.to_owned(),
+            wavelength_um: None,
+            brdf: AnyBrdf::new(Family::Paper, &at).unwrap(),
+            e_percent: 1.0,
+            psi_max_deg: 70.0,
+        }
+    }
+
+    #[test]
+    fn each_fit_stands_once() {
+        let fits = [0.1, 0.2, 0.3].map(|kd| fitted("scan.csv", kd));
+        let [a, b, c] = fits.each_ref();
+        let lobes = |fits| {
+            let lobes = Lobes::of(fits);
+            let names: Vec<_> = lobes.distinct.iter().map(|(name, _)| *name).collect();
+            (names, lobes.channels)
+        };
+        assert_eq!(lobes([a, a, a]), (vec!["grey"], ["grey"; 3]));
+        assert_eq!(lobes([a, b, c]), (COLOURS.to_vec(), COLOURS));
+        let two = (vec!["red", "blue"], ["red", "red", "blue"]);
+        assert_eq!(lobes([a, a, b]), two);
+        let two = (vec!["red", "green"], ["red", "green", "red"]);
+        assert_eq!(lobes([a, b, a]), two);
+    }
+
+    fn plugin(name: &str, file: &str) -> Result<String, ExportError> {
+        let coating = Coating {
+            fits: vec![fitted(file, 0.1)],
+        };
+        let options = ExportOptions {
+            name: name.to_owned(),
+            tolerance: 1e-3,
+            rgb: None,
+        };
+        let mut bytes = Vec::new();
+        write_plugin(&coating, &options, &mut bytes)?;
+        Ok(String::from_utf8(bytes).unwrap())
+    }
+
+    #[test]
+    fn the_name_of_a_scan_stays_in_its_comment() {
+        let text = plugin("brdf", "a\nimport os\r\"\"\"#").unwrap();
+        let lines: Vec<_> = text
+            .lines()
+            .filter(|line| line.contains("import os"))
+            .collect();
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].starts_with("# ") && !text.contains('\r'));
+    }
+
+    #[test]
+    fn a_name_that_is_none_is_refused() {
+        for name in ["", "two words", "\"", "<a>", "1st"] {
+            assert!(
+                matches!(plugin(name, "scan.csv"), Err(ExportError::Name(_))),
+                "{name}"
+            );
+        }
+    }
+}

@@ -157,7 +157,9 @@ def main():
     register()
     size = {} if arguments.size is None else {"size": arguments.size}
     scene = mi.load_file(str(arguments.scene), **size)
-    mi.util.write_bitmap(str(arguments.output), mi.render(scene, spp=arguments.spp))
+    picture = mi.render(scene, spp=arguments.spp)
+    mi.util.write_bitmap(str(arguments.output), picture, write_async=False)
+    print(f"written: {arguments.output}")
 
 
 if __name__ == "__main__":

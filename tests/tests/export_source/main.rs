@@ -2,9 +2,11 @@
 //! a C compiler, NumPy, and the compiler of the Open Shading Language.
 
 mod c;
+mod cli;
 mod coatings;
 mod interpreter;
 mod numpy;
+mod osl;
 mod points;
 mod reference;
 mod shader;

@@ -95,7 +95,8 @@ fn function<D: Dialect>(dialect: &D, function: &Function) -> String {
     text += &comment::<D>(&function.comment.join("\n"));
     let _ = writeln!(text, "{}", dialect.head(function));
     let statements = function.body.iter().flat_map(|one| statement(dialect, one));
-    let body: String = statements.map(|line| format!("    {line}\n")).collect();
+    let body: Vec<_> = statements.map(|line| format!("    {line}\n")).collect();
+    let body = body.concat();
     for parameter in &function.parameters {
         if !body.contains(parameter.name) {
             text += &dialect.unused(parameter.name);

@@ -125,3 +125,62 @@ fn statement(line: &'static str) -> Statement {
 fn without_mark(line: &'static str) -> &'static str {
     line[1..].strip_prefix(' ').unwrap_or(&line[1..])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::source::expression::Term;
+
+    fn numbers(terms: &[Term]) -> Vec<String> {
+        let inside = |term: &Term| match term {
+            Term::Number(digits) => vec![digits.clone()],
+            Term::Group(inside) => numbers(inside),
+            Term::Call(_, arguments) => arguments.iter().flat_map(|a| numbers(a)).collect(),
+            _ => Vec::new(),
+        };
+        terms.iter().flat_map(inside).collect()
+    }
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "that is the question")]
+    fn single_precision_has_every_number() {
+        for function in Family::ALL
+            .into_iter()
+            .flat_map(evaluation)
+            .chain(sampling())
+        {
+            for statement in &function.body {
+                let (Statement::Let(_, terms)
+                | Statement::Condition(_, terms)
+                | Statement::Return(terms)) = statement
+                else {
+                    continue;
+                };
+                for digits in numbers(terms) {
+                    let number: f64 = digits.parse().unwrap();
+                    assert!(
+                        digits.contains('.') && f64::from(number as f32) == number,
+                        "{digits}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn functions_are_what_their_text_says() {
+        let all = sampling();
+        let [_, density, _, draw] = all.as_slice() else {
+            panic!("four functions")
+        };
+        assert_eq!((density.name, density.returns_vector), ("density", false));
+        assert_eq!((draw.name, draw.returns_vector), ("draw", true));
+        assert!(draw.comment[0].starts_with("A view for a source"));
+        let numbers = Parameter {
+            name: "numbers",
+            is_vector: true,
+        };
+        assert_eq!(draw.parameters[1], numbers);
+        assert!(matches!(draw.body.last(), Some(Statement::Return(_))));
+    }
+}

@@ -27,7 +27,8 @@ NAME_sample(source, numbers, view, density)   view and its density from three nu
 
 Shaders of this language put materials together of closures that the renderer has; they cannot
 define one. These functions serve shaders that compute light themselves, patterns and the baking of
-tables; the shader NAME_value gives f_r of two directions about a normal.";
+tables; the shader NAME_value gives f_r of two directions about a normal. A file has room for one
+shader: another includes this one with NAME_NO_SHADER defined.";
 
 const OWN_CONSTANTS: &str = "\
 #define NAME_OUTSIDE 0.0
@@ -53,6 +54,7 @@ float NAME_sample(vector source, vector numbers, output vector view, output floa
     return NAME_weight(source, view);
 }
 
+#ifndef NAME_NO_SHADER
 // A direction about a normal, its length being 1: z along the normal, x across any other direction.
 vector NAME_about(vector direction, normal n) {
     vector across = abs(n[2]) < 0.5 ? vector(0.0, 0.0, 1.0) : vector(1.0, 0.0, 0.0);
@@ -69,6 +71,7 @@ shader NAME_value(
     normal n = normalize(Normal);
     Value = NAME_eval(NAME_about(Source, n), NAME_about(View, n));
 }
+#endif
 ";
 
 /// The language.

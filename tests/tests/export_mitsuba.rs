@@ -10,7 +10,7 @@ use std::process::{Command, Output, Stdio};
 
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Sampler};
 use brdf_fit::export::{Coating, Fitted};
-use brdf_tests::{export_command, generator, in_workspace, python};
+use brdf_tests::{export_command, generator, in_workspace, python, run_fit};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -443,9 +443,24 @@ fn the_scene_shows_the_coating_and_its_highlight() {
 }
 
 #[test]
-fn without_arguments_the_plugin_renders_what_is_beside_it() {
+fn from_a_scan_to_a_picture_in_three_commands() {
     let plugins = Plugins::new();
-    let plugin = plugins.export("grey", &[colourful()[0]]);
+    let (fits, plugin) = (plugins.path("fit.json"), plugins.path("coating.py"));
+    let scan = in_workspace("data/measured/z307_on_aluminium.csv");
+    let output = run_fit([
+        scan.as_os_str(),
+        "--n".as_ref(),
+        "1.5".as_ref(),
+        "--json".as_ref(),
+        fits.as_os_str(),
+    ]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let mut command = export_command();
+    command
+        .arg(&fits)
+        .args(["--to", "mitsuba", "--wavelength", "0.63079", "-o"]);
+    let output = command.arg(&plugin).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let Some(output) = render(&plugin, &["--spp", "1", "--size", "16"]) else {
         return;
     };

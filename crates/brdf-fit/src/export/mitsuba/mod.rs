@@ -80,7 +80,7 @@ impl<'a> Lobes<'a> {
         let lobes = self.distinct.iter().map(|(lobe, _)| lobe.to_uppercase());
         let lobes: Vec<_> = lobes.collect();
         let channels = self.channels.map(str::to_uppercase);
-        writeln!(writer, "LOBES = [{}]", lobes.join(", "))?;
+        writeln!(writer, "\nLOBES = [{}]", lobes.join(", "))?;
         writeln!(writer, "CHANNELS = [{}]", channels.join(", "))
     }
 }

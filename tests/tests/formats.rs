@@ -242,7 +242,9 @@ fn a_format_is_forced_and_its_sides_are_its_own() {
     );
     let unknown = run_fit(["a.csv", "--format", "merl-text"]);
     assert_eq!(unknown.status.code(), Some(BAD));
-    assert!(text(&unknown.stderr).contains("is not a format: expected one of csv, merl, astm, zemax"));
+    assert!(
+        text(&unknown.stderr).contains("is not a format: expected one of csv, merl, astm, zemax")
+    );
 }
 
 /// What `export` writes of the fits of a file.

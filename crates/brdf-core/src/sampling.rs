@@ -126,6 +126,12 @@ impl Sampler {
         }
     }
 
+    /// The weight w_s of the specular lobe at cos psi = (i/16)^2, i from 0 to 16. Between them it is
+    /// interpolated linearly in sqrt(cos psi).
+    pub fn specular_weights(&self) -> [f64; INCIDENCES] {
+        self.specular_weights
+    }
+
     /// Draws the view direction for a source, both unit vectors away from the surface with z its
     /// normal, from three numbers of [0, 1): the first chooses the lobe, the others the direction.
     ///

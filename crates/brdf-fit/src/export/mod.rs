@@ -6,10 +6,15 @@ mod coating;
 mod csv;
 mod domain;
 mod merl;
+mod mitsuba;
+mod rgb;
+mod source;
 mod table;
 mod target;
 mod zemax;
 
 pub use coating::{Coating, CoatingError, Fitted};
 pub use csv::AngleGrid;
-pub use target::{ExportError, ExportOptions, Target, export};
+pub use rgb::{COLOURS, PRIMARIES_UM, REACH_UM};
+pub use source::{Language, NameError};
+pub use target::{ExportError, ExportOptions, Target, export, export_beside};

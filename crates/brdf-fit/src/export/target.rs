@@ -7,33 +7,49 @@ use brdf_core::GeometryError;
 
 use super::coating::{Coating, CoatingError};
 use super::csv::AngleGrid;
+use super::source::{Language, NameError, Source};
 use super::table::{MOST_ENTRIES, Unreachable};
-use super::{astm, csv, merl, zemax};
+use super::{astm, csv, merl, mitsuba, zemax};
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// A MERL table of three channels.
-    Merl,
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
+    /// A MERL table of three channels.
+    Merl,
     /// ASTM E1392 text in Cornell's layout, a table.
     Astm,
     /// Zemax tabular BSDF.
     Zemax,
     /// Our own table on a grid of angles.
     Csv,
+    /// Mitsuba 3: a BSDF plugin in Python, and a scene beside it.
+    Mitsuba,
+    /// Source code.
+    Source(Language),
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 5] = [
-        (Self::Merl, "merl"),
+    pub const NAMED: [(Self, &str); 11] = [
         (Self::Json, "json"),
+        (Self::Source(Language::C), "c"),
+        (Self::Source(Language::Glsl), "glsl"),
+        (Self::Source(Language::Wgsl), "wgsl"),
+        (Self::Source(Language::Osl), "osl"),
+        (Self::Source(Language::Python), "python"),
+        (Self::Mitsuba, "mitsuba"),
+        (Self::Merl, "merl"),
         (Self::Astm, "astm"),
         (Self::Zemax, "zemax"),
         (Self::Csv, "csv"),
     ];
+
+    /// The extension of the second file of a form that has one.
+    pub fn beside(self) -> Option<&'static str> {
+        (self == Self::Mitsuba).then_some("xml")
+    }
 }
 
 impl FromStr for Target {
@@ -51,12 +67,26 @@ impl FromStr for Target {
 /// What a form may be told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportOptions {
-    /// The first word of the names in source code.
+    /// The first word of the names in source code, and the type of the material in Mitsuba.
     pub name: String,
     /// The largest error of a table: of f_r interpolated between its entries, relative.
     pub tolerance: f64,
     /// The angles of our own table.
     pub grid: AngleGrid,
+    /// The wavelengths in micrometres that stand for red, green and blue; see [`Coating::rgb`].
+    pub rgb: Option<[f64; 3]>,
+}
+
+/// What the command has where nothing is said.
+impl Default for ExportOptions {
+    fn default() -> Self {
+        Self {
+            name: "brdf".to_owned(),
+            tolerance: 1e-3,
+            grid: AngleGrid::default(),
+            rgb: None,
+        }
+    }
 }
 
 /// Why a coating does not leave.
@@ -79,6 +109,9 @@ pub enum ExportError {
     /// Angles outside the model's domain.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// The name is none in source code.
+    #[error(transparent)]
+    Name(#[from] NameError),
     /// It cannot be written.
     #[error(transparent)]
     Io(#[from] io::Error),
@@ -101,15 +134,28 @@ pub fn export(
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
     match target {
-        Target::Merl => {
-            let fits = coating.fits.as_slice();
-            let fit = |i: usize| &fits[i.min(fits.len() - 1)].brdf;
-            merl::write([0, 1, 2].map(fit), writer)?;
-        }
+        Target::Merl => merl::write(coating.rgb(options.rgb)?, writer)?,
         Target::Json => coating.write(writer)?,
         Target::Astm => astm::write(coating, options.tolerance, writer)?,
         Target::Zemax => zemax::write(coating.only()?, options.tolerance, writer)?,
         Target::Csv => csv::write(coating, &options.grid, writer)?,
+        Target::Mitsuba => mitsuba::write_plugin(coating, options, writer)?,
+        Target::Source(language) => {
+            let source = Source::new(&options.name, coating.only()?)?;
+            writer.write_all(source.text(language).as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Writes the second file of a form that has one ([`Target::beside`]), and nothing for others.
+pub fn export_beside(
+    target: Target,
+    options: &ExportOptions,
+    writer: &mut dyn Write,
+) -> Result<(), ExportError> {
+    if target == Target::Mitsuba {
+        mitsuba::write_scene(options, writer)?;
     }
     Ok(())
 }

@@ -103,6 +103,9 @@ mod tests {
             assert_eq!(format.name(), name);
         }
         let error = "x".parse::<Format>().unwrap_err();
-        assert!(error.contains("expected one of csv, merl, astm, "), "{error}");
+        assert!(
+            error.contains("expected one of csv, merl, astm, "),
+            "{error}"
+        );
     }
 }

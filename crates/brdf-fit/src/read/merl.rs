@@ -60,8 +60,18 @@ impl Channel {
     /// All channels, in the order of the file.
     pub const ALL: [Self; 3] = [Self::Red, Self::Green, Self::Blue];
 
-    /// The wavelength that stands for it, in micrometres: the dominant one of the sRGB primary.
-    pub fn wavelength_um(self) -> f64 {
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Red => "red",
+            Self::Green => "green",
+            Self::Blue => "blue",
+        }
+    }
+
+    /// The wavelength that stands for it, in micrometres: the dominant one of the primary of sRGB
+    /// (IEC 61966-2-1) against its white.
+    pub const fn wavelength_um(self) -> f64 {
         match self {
             Self::Red => 0.611,
             Self::Green => 0.549,
@@ -354,7 +364,7 @@ impl<R: Read + Seek> Table<R> {
             }
         }
         if readings.is_empty() {
-            let message = format!("has no measured bin in {channel:?}");
+            let message = format!("has no measured bin in {}", channel.name());
             return Err(file_error(&self.name, message));
         }
         let mut conversions = vec![conversion(channel)];
@@ -445,8 +455,9 @@ impl Slab {
             let value = f64::from_le_bytes(*value);
             if !value.is_finite() {
                 return Err(format!(
-                    "{channel:?}, bin ({i}, {j}, {k}): {value} is not a finite number: expected \
-                     f_r, or a negative number for a bin that was not measured"
+                    "{}, bin ({i}, {j}, {k}): {value} is not a finite number: expected \
+                     f_r, or a negative number for a bin that was not measured",
+                    channel.name()
                 ));
             }
             match bins.middle([i, j, k]) {
@@ -470,7 +481,7 @@ impl Slab {
 fn conversion(channel: Channel) -> String {
     format!(
         "MERL table, {} taken for {} um: f_r in the middle of each bin of theta_h, theta_d, phi_d",
-        format!("{channel:?}").to_lowercase(),
+        channel.name(),
         channel.wavelength_um()
     )
 }
@@ -478,7 +489,7 @@ fn conversion(channel: Channel) -> String {
 fn scan_conversion(channel: Channel) -> String {
     format!(
         "MERL table, {} taken for {} um: the bins that a scan in the plane of incidence meets",
-        format!("{channel:?}").to_lowercase(),
+        channel.name(),
         channel.wavelength_um()
     )
 }
@@ -650,11 +661,11 @@ mod tests {
         infinite[12 + 8 * 47..][..8].copy_from_slice(&f64::NAN.to_le_bytes());
         assert_eq!(
             error(&infinite),
-            "x.binary: Red, bin (1, 0, 7): NaN is not a finite number: expected f_r, or a negative \
+            "x.binary: red, bin (1, 0, 7): NaN is not a finite number: expected f_r, or a negative \
              number for a bin that was not measured"
         );
         let nothing = [header([6, 5, 8]), [(-1.0_f64).to_le_bytes(); 720].concat()].concat();
-        assert!(error(&nothing).contains("has no measured bin in Red"));
+        assert!(error(&nothing).contains("has no measured bin in red"));
     }
 
     #[test]

@@ -1,0 +1,186 @@
+//! The formulas of a family: functions in a small language of statements, which each
+//! [dialect](super::dialect) prints in its own words. They are written once, in `formula/*.txt`:
+//!
+//! ```text
+//! # comment, above a function and between its lines
+//! fn name(real, vector: vec3) -> vec3      what is not said to be a vector is a real number
+//!     let local = expression
+//!     condition local = expression         true or false, for select(condition, then, otherwise)
+//!     return expression                    vec3(x, y, z) where a vector is returned
+//! ```
+//!
+//! A blank line ends a function. Constants are in capitals. Besides the functions of the formulas
+//! there are sqrt, exp, log, sin, cos, abs, min, max, select and both (and).
+
+use brdf_core::Family;
+
+use super::expression::{Expression, parse};
+
+/// A function.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Function {
+    /// What it is: lines.
+    pub(super) comment: Vec<&'static str>,
+    /// Its name, without the first word that all names have.
+    pub(super) name: &'static str,
+    /// Its parameters.
+    pub(super) parameters: Vec<Parameter>,
+    /// Whether it returns a vector.
+    pub(super) returns_vector: bool,
+    /// What it does.
+    pub(super) body: Vec<Statement>,
+}
+
+/// A parameter of a function.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Parameter {
+    /// Its name.
+    pub(super) name: &'static str,
+    /// Whether it is a vector.
+    pub(super) is_vector: bool,
+}
+
+/// A line of a function.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Statement {
+    /// Words.
+    Comment(&'static str),
+    /// A local number.
+    Let(&'static str, Expression),
+    /// A local truth.
+    Condition(&'static str, Expression),
+    /// The result.
+    Return(Expression),
+}
+
+/// What evaluates a BRDF of a family, in an order in which each function is known where it is
+/// called.
+pub(super) fn evaluation(family: Family) -> Vec<Function> {
+    let facet = match family {
+        Family::Paper | Family::Smith => include_str!("formula/ellipsoid.txt"),
+        Family::Power => include_str!("formula/power.txt"),
+        Family::Ggx => include_str!("formula/ggx.txt"),
+        Family::Beckmann => include_str!("formula/beckmann.txt"),
+    };
+    let shadowing = match family {
+        Family::Paper | Family::Power | Family::Beckmann => include_str!("formula/v_groove.txt"),
+        Family::Smith | Family::Ggx => include_str!("formula/smith.txt"),
+    };
+    let elementary = include_str!("formula/elementary.txt");
+    let (fresnel, brdf) = (
+        include_str!("formula/fresnel.txt"),
+        include_str!("formula/brdf.txt"),
+    );
+    let texts = [elementary, fresnel, shadowing, facet, brdf];
+    texts.into_iter().flat_map(functions).collect()
+}
+
+/// What draws directions, after what [evaluates](evaluation). It calls specular_weight(cos psi),
+/// which each dialect writes for itself, since it is a table.
+pub(super) fn sampling() -> Vec<Function> {
+    functions(include_str!("formula/sampling.txt")).collect()
+}
+
+fn functions(text: &'static str) -> impl Iterator<Item = Function> {
+    text.split("\n\n").map(function)
+}
+
+fn function(text: &'static str) -> Function {
+    let (comment, code): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with('#'));
+    let head = code.first().copied().unwrap_or_default();
+    let (name, rest) = head["fn ".len()..].split_once('(').expect("parameters");
+    let (parameters, result) = rest.split_once(')').expect("an end of the parameters");
+    Function {
+        comment: comment.into_iter().map(without_mark).collect(),
+        name,
+        parameters: parameters.split(", ").map(parameter).collect(),
+        returns_vector: result == " -> vec3",
+        body: code[1..]
+            .iter()
+            .map(|line| statement(line.trim()))
+            .collect(),
+    }
+}
+
+fn parameter(text: &'static str) -> Parameter {
+    let (name, kind) = text.split_once(": ").unwrap_or((text, ""));
+    Parameter {
+        name,
+        is_vector: kind == "vec3",
+    }
+}
+
+fn statement(line: &'static str) -> Statement {
+    if line.starts_with('#') {
+        return Statement::Comment(without_mark(line));
+    }
+    let (keyword, rest) = line.split_once(' ').expect("a statement");
+    match (keyword, rest.split_once(" = ")) {
+        ("let", Some((name, value))) => Statement::Let(name, parse(value)),
+        ("condition", Some((name, value))) => Statement::Condition(name, parse(value)),
+        _ => Statement::Return(parse(rest)),
+    }
+}
+
+fn without_mark(line: &'static str) -> &'static str {
+    line[1..].strip_prefix(' ').unwrap_or(&line[1..])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::export::source::expression::Term;
+
+    fn numbers(terms: &[Term]) -> Vec<String> {
+        let inside = |term: &Term| match term {
+            Term::Number(digits) => vec![digits.clone()],
+            Term::Group(inside) => numbers(inside),
+            Term::Call(_, arguments) => arguments.iter().flat_map(|a| numbers(a)).collect(),
+            _ => Vec::new(),
+        };
+        terms.iter().flat_map(inside).collect()
+    }
+
+    #[test]
+    #[expect(clippy::cast_possible_truncation, reason = "that is the question")]
+    fn single_precision_has_every_number() {
+        for function in Family::ALL
+            .into_iter()
+            .flat_map(evaluation)
+            .chain(sampling())
+        {
+            for statement in &function.body {
+                let (Statement::Let(_, terms)
+                | Statement::Condition(_, terms)
+                | Statement::Return(terms)) = statement
+                else {
+                    continue;
+                };
+                for digits in numbers(terms) {
+                    let number: f64 = digits.parse().unwrap();
+                    assert!(
+                        digits.contains('.') && f64::from(number as f32) == number,
+                        "{digits}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn functions_are_what_their_text_says() {
+        let all = sampling();
+        let [_, density, _, draw] = all.as_slice() else {
+            panic!("four functions")
+        };
+        assert_eq!((density.name, density.returns_vector), ("density", false));
+        assert_eq!((draw.name, draw.returns_vector), ("draw", true));
+        assert!(draw.comment[0].starts_with("A view for a source"));
+        let numbers = Parameter {
+            name: "numbers",
+            is_vector: true,
+        };
+        assert_eq!(draw.parameters[1], numbers);
+        assert!(matches!(draw.body.last(), Some(Statement::Return(_))));
+    }
+}

@@ -1,0 +1,121 @@
+//! Open Shading Language.
+
+use super::dialect::{Dialect, same_call, typed_head, with_operators};
+use super::formula::Function;
+use super::{Parts, Source, of_shaders};
+
+/// Functions for any shader, and a shader that gives their value.
+pub(super) fn shader(source: &Source) -> String {
+    let dialect = Osl { name: source.name };
+    source.file(&dialect, &PARTS)
+}
+
+const PARTS: Parts = Parts {
+    conventions: CONVENTIONS,
+    opening: "\n",
+    constants: OWN_CONSTANTS,
+    specular_weight: SPECULAR_WEIGHT,
+    closing: CLOSING,
+};
+
+const CONVENTIONS: &str = "
+NAME_eval(source, view)                       f_r in 1/sr, unit vectors; 0 below the surface
+NAME_eval_angles(psi, theta, phi)             f_r in 1/sr, angles in radians; 0 outside the domain
+NAME_pdf(source, view)                        density of the views that are sampled, in 1/sr
+NAME_sample(source, numbers, view, density)   view and its density from three numbers of [0, 1);
+                                              returns f_r cos theta / density, 0 below the surface
+
+Shaders of this language put materials together of closures that the renderer has; they cannot
+define one. These functions serve shaders that compute light themselves, patterns and the baking of
+tables; the shader NAME_value gives f_r of two directions about a normal. A file has room for one
+shader: another includes this one with NAME_NO_SHADER defined.";
+
+const OWN_CONSTANTS: &str = "\
+#define NAME_OUTSIDE 0.0
+#define NAME_BELOW_ONE 0.99999994
+";
+
+const SPECULAR_WEIGHT: &str = "\
+float NAME_specular_weight(float cos_psi) {
+    float weights[17] = {
+        VALUES
+    };
+    float position = 16.0 * sqrt(max(cos_psi, 0.0));
+    int below = int(min(position, 15.0));
+    float left = weights[below];
+    return left + (position - below) * (weights[below + 1] - left);
+}
+";
+
+const CLOSING: &str = "
+float NAME_sample(vector source, vector numbers, output vector view, output float density) {
+    view = NAME_draw(source, numbers);
+    density = NAME_pdf(source, view);
+    return NAME_weight(source, view);
+}
+
+#ifndef NAME_NO_SHADER
+// A direction about a normal, its length being 1: z along the normal, x across any other direction.
+vector NAME_about(vector direction, normal n) {
+    vector across = abs(n[2]) < 0.5 ? vector(0.0, 0.0, 1.0) : vector(1.0, 0.0, 0.0);
+    vector x = normalize(cross(across, n));
+    return normalize(vector(dot(direction, x), dot(direction, cross(n, x)), dot(direction, n)));
+}
+
+// f_r in 1/sr of the directions towards the source and towards the viewer.
+shader NAME_value(
+    vector Source = vector(0.0, 0.0, 1.0),
+    vector View = vector(0.0, 0.0, 1.0),
+    normal Normal = N,
+    output float Value = 0.0) {
+    normal n = normalize(Normal);
+    Value = NAME_eval(NAME_about(Source, n), NAME_about(View, n));
+}
+#endif
+";
+
+/// The language.
+struct Osl<'a> {
+    name: &'a str,
+}
+
+impl Dialect for Osl<'_> {
+    const COMMENT: &'static str = "//";
+
+    fn named(&self, name: &str) -> String {
+        format!("{}_{}", self.name, of_shaders(name))
+    }
+
+    fn number(&self, digits: &str) -> String {
+        digits.to_owned()
+    }
+
+    fn component(&self, vector: &str, axis: usize) -> String {
+        format!("{vector}[{axis}]")
+    }
+
+    fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {
+        same_call(function, arguments).or_else(|| with_operators(function, arguments))
+    }
+
+    /// The language has no constants outside of functions.
+    fn constant(&self, name: &str, value: f64) -> String {
+        format!("#define {} {value:?}\n", self.named(name))
+    }
+
+    fn head(&self, function: &Function) -> String {
+        typed_head(&self.named(function.name), function, "float", "vector")
+    }
+
+    fn local(&self) -> String {
+        "float ".to_owned()
+    }
+
+    fn condition(&self) -> &'static str {
+        "int "
+    }
+
+    fn return_vector(&self, components: &[String]) -> Vec<String> {
+        vec![format!("return vector({});", components.join(", "))]
+    }
+}

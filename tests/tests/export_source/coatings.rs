@@ -35,6 +35,7 @@ pub(crate) fn source(brdf: &AnyBrdf, language: Language, name: &str) -> String {
     let options = ExportOptions {
         name: name.to_owned(),
         tolerance: 1e-3,
+        rgb: None,
     };
     let mut bytes = Vec::new();
     export(&coating, Target::Source(language), &options, &mut bytes).expect("a source");

@@ -1,9 +1,9 @@
 //! The command line: writes fitted BRDFs in the forms that other programs take.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use brdf_fit::export::{Coating, ExportOptions, Target, export};
+use brdf_fit::export::{Coating, ExportOptions, Target, export, export_beside};
 use brdf_fit::output::{self, check_outputs, complain, write_file};
 use clap::Parser;
 
@@ -18,7 +18,8 @@ struct Arguments {
     #[arg(value_name = "FILE")]
     fits: PathBuf,
 
-    /// The form: json; source code: c, glsl, wgsl, osl, python
+    /// The form: json; source code: c, glsl, wgsl, osl, python; mitsuba (a plugin, and a scene
+    /// beside it: with -o x.py, x.xml)
     #[arg(long, value_name = "FORMAT")]
     to: Target,
 
@@ -34,7 +35,12 @@ struct Arguments {
     #[arg(long, value_name = "UM")]
     wavelength: Option<f64>,
 
-    /// First word of the names in source code
+    /// The wavelengths in um of the fits that are red, green and blue, for forms with colours
+    /// [default: the only fit, for grey, or those nearest to 0.611,0.549,0.464]
+    #[arg(long, value_name = "RED,GREEN,BLUE", value_parser = three, conflicts_with = "wavelength")]
+    rgb: Option<[f64; 3]>,
+
+    /// First word of the names in source code, and the type of the material in Mitsuba
     #[arg(long, value_name = "WORD", default_value = "brdf")]
     name: String,
 
@@ -56,7 +62,9 @@ fn main() -> ExitCode {
 
 fn run(arguments: &Arguments) -> Result<(), String> {
     let (input, output) = (arguments.fits.as_path(), arguments.output.as_deref());
-    check_outputs([input], output).map_err(|error| error.to_string())?;
+    let beside = arguments.beside()?;
+    let outputs = output.into_iter().chain(beside.as_deref());
+    check_outputs([input], outputs).map_err(|error| error.to_string())?;
     let coating = arguments.coating().map_err(|message| {
         let path = input.display();
         if message.starts_with(&path.to_string()) {
@@ -68,18 +76,48 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let options = ExportOptions {
         name: arguments.name.clone(),
         tolerance: arguments.tolerance,
+        rgb: arguments.rgb,
     };
-    let mut bytes = Vec::new();
-    export(&coating, arguments.to, &options, &mut bytes).map_err(|error| error.to_string())?;
-    match output {
-        Some(path) => {
-            write_file(path, |writer| writer.write_all(&bytes)).map_err(|error| error.to_string())
+    let (mut bytes, mut bytes_beside) = (Vec::new(), Vec::new());
+    export(&coating, arguments.to, &options, &mut bytes)
+        .and_then(|()| export_beside(arguments.to, &options, &mut bytes_beside))
+        .map_err(|error| error.to_string())?;
+    match (output, beside) {
+        (None, _) => output::print(&bytes).map_err(|error| format!("standard output: {error}")),
+        (Some(path), None) => write(path, &bytes),
+        (Some(path), Some(beside)) => {
+            write(&beside, &bytes_beside)?;
+            write(path, &bytes)?;
+            let said = format!("written: {}, {}\n", path.display(), beside.display());
+            output::print(said.as_bytes()).map_err(|error| format!("standard output: {error}"))
         }
-        None => output::print(&bytes).map_err(|error| format!("standard output: {error}")),
     }
 }
 
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    write_file(path, |writer| writer.write_all(bytes)).map_err(|error| error.to_string())
+}
+
+/// Three numbers with commas between them.
+fn three(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|n| n.trim().parse().ok()).collect();
+    let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+    numbers.ok_or_else(|| "expected three numbers, as in 0.63,0.55,0.46".to_owned())
+}
+
 impl Arguments {
+    /// The second file, of a form that has one: beside the first, which then has to be named.
+    fn beside(&self) -> Result<Option<PathBuf>, String> {
+        let Some(extension) = self.to.beside() else {
+            return Ok(None);
+        };
+        let output = self.output.as_ref();
+        let beside = output.map(|path| path.with_extension(extension));
+        beside.map(Some).ok_or_else(|| {
+            format!("this form is two files, FILE and one of the extension {extension}: expected -o FILE")
+        })
+    }
+
     /// What is exported.
     fn coating(&self) -> Result<Coating, String> {
         let all = Coating::read(&self.fits).map_err(|error| error.to_string())?;

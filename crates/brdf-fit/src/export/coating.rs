@@ -59,6 +59,18 @@ pub enum CoatingError {
         /// What there is.
         found: Vec<String>,
     },
+    /// There is no fit for one of the colours red, green and blue.
+    #[error("no fit within {reach_um} um of {colour} ({primary_um} um): expected --wavelength UM, for grey, or --rgb RED,GREEN,BLUE, of {}", .found.join(", "))]
+    NoColour {
+        /// Which.
+        colour: &'static str,
+        /// Where it is looked for, in micrometres.
+        primary_um: f64,
+        /// How far from there, in micrometres.
+        reach_um: f64,
+        /// What there is.
+        found: Vec<String>,
+    },
     /// There is room for one fit.
     #[error("there are several fits: expected one of {} to be chosen with --{option}", .found.join(", "))]
     Several {
@@ -141,22 +153,32 @@ impl Coating {
         Ok(Self { fits })
     }
 
-    /// The fits within 1 % of a wavelength in micrometres.
+    /// The fit nearest to a wavelength in micrometres.
+    ///
+    /// Errors: none is within 1 %.
     pub fn of_wavelength(self, wavelength_um: f64) -> Result<Self, CoatingError> {
-        let found = self.wavelengths();
-        let distance = |fit: &Fitted| fit.wavelength_um.map(|w| (w / wavelength_um - 1.0).abs());
-        let near = |fit: &&Fitted| distance(fit).is_some_and(|d| d <= WAVELENGTH_TOLERANCE);
-        let nearest = self.fits.iter().filter(near).min_by(|a, b| {
-            distance(a)
-                .unwrap_or(1.0)
-                .total_cmp(&distance(b).unwrap_or(1.0))
-        });
-        let wanted = format!("{wavelength_um} um");
-        nearest
-            .map(|fit| Self {
-                fits: vec![fit.clone()],
+        let fit = self.at_wavelength(wavelength_um)?.clone();
+        Ok(Self { fits: vec![fit] })
+    }
+
+    pub(super) fn at_wavelength(&self, wavelength_um: f64) -> Result<&Fitted, CoatingError> {
+        self.within(wavelength_um, WAVELENGTH_TOLERANCE * wavelength_um)
+            .ok_or_else(|| CoatingError::NoSuch {
+                wanted: format!("{wavelength_um} um"),
+                found: self.wavelengths(),
             })
-            .ok_or(CoatingError::NoSuch { wanted, found })
+    }
+
+    /// The fit nearest to a wavelength, none farther than the reach, both in micrometres.
+    pub(super) fn within(&self, wavelength_um: f64, reach_um: f64) -> Option<&Fitted> {
+        let distance = |fit: &Fitted| fit.wavelength_um.map(|w| (w - wavelength_um).abs());
+        let near = self
+            .fits
+            .iter()
+            .filter_map(|fit| Some((fit, distance(fit)?)));
+        near.filter(|(_, distance)| *distance <= reach_um)
+            .min_by(|(_, a), (_, b)| a.total_cmp(b))
+            .map(|(fit, _)| fit)
     }
 
     /// The only fit.
@@ -172,7 +194,7 @@ impl Coating {
         }
     }
 
-    fn wavelengths(&self) -> Vec<String> {
+    pub(super) fn wavelengths(&self) -> Vec<String> {
         distinct(self.fits.iter().map(|fit| match fit.wavelength_um {
             Some(wavelength) => format!("{wavelength} um"),
             None => "one without a wavelength".to_owned(),

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::str::FromStr;
 
 use super::coating::{Coating, CoatingError};
+use super::mitsuba;
 use super::source::{Language, NameError, Source};
 
 /// A form in which a coating leaves.
@@ -11,20 +12,28 @@ use super::source::{Language, NameError, Source};
 pub enum Target {
     /// The model as versioned JSON: what [`Coating::read`] reads.
     Json,
+    /// Mitsuba 3: a BSDF plugin in Python, and a scene beside it.
+    Mitsuba,
     /// Source code.
     Source(Language),
 }
 
 impl Target {
     /// All forms, with the names that options give them.
-    pub const NAMED: [(Self, &str); 6] = [
+    pub const NAMED: [(Self, &str); 7] = [
         (Self::Json, "json"),
         (Self::Source(Language::C), "c"),
         (Self::Source(Language::Glsl), "glsl"),
         (Self::Source(Language::Wgsl), "wgsl"),
         (Self::Source(Language::Osl), "osl"),
         (Self::Source(Language::Python), "python"),
+        (Self::Mitsuba, "mitsuba"),
     ];
+
+    /// The extension of the second file of a form that has one.
+    pub fn beside(self) -> Option<&'static str> {
+        (self == Self::Mitsuba).then_some("xml")
+    }
 }
 
 impl FromStr for Target {
@@ -42,10 +51,12 @@ impl FromStr for Target {
 /// What a form may be told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportOptions {
-    /// The first word of the names in source code.
+    /// The first word of the names in source code, and the type of the material in Mitsuba.
     pub name: String,
     /// The largest error of a table: of f_r interpolated between its entries, relative.
     pub tolerance: f64,
+    /// The wavelengths in micrometres that stand for red, green and blue; see [`Coating::rgb`].
+    pub rgb: Option<[f64; 3]>,
 }
 
 /// Why a coating does not leave.
@@ -71,10 +82,23 @@ pub fn export(
 ) -> Result<(), ExportError> {
     match target {
         Target::Json => coating.write(writer)?,
+        Target::Mitsuba => mitsuba::write_plugin(coating, options, writer)?,
         Target::Source(language) => {
             let source = Source::new(&options.name, coating.only()?)?;
             writer.write_all(source.text(language).as_bytes())?;
         }
+    }
+    Ok(())
+}
+
+/// Writes the second file of a form that has one ([`Target::beside`]), and nothing for others.
+pub fn export_beside(
+    target: Target,
+    options: &ExportOptions,
+    writer: &mut dyn Write,
+) -> Result<(), ExportError> {
+    if target == Target::Mitsuba {
+        mitsuba::write_scene(options, writer)?;
     }
     Ok(())
 }

@@ -75,25 +75,29 @@ const SPECULAR_WEIGHT: &str = "\
 w_s, the part of the views that the facets mirror, between its values at cos psi = (i/16)^2. What it
 is changes the variance of an estimate, and nothing else.";
 
+/// Checks that a word is an identifier in all languages, and remains one with an underscore and
+/// another word behind it, as all names have. GLSL keeps gl_ and two underscores for itself.
+pub(super) fn check_name(name: &str) -> Result<(), NameError> {
+    let letter = |c: char| c.is_ascii_alphabetic();
+    let word = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric());
+    let first = name.split('_').next();
+    if name.starts_with(letter) && name.split('_').all(word) && first != Some("gl") {
+        Ok(())
+    } else {
+        Err(NameError(name.to_owned()))
+    }
+}
+
 impl<'a> Source<'a> {
-    /// A BRDF, and the first word of all names: what is an identifier in all languages, since all
-    /// names have an underscore and another word behind it.
-    ///
-    /// Errors: no such word. GLSL keeps gl_ and two underscores for itself.
+    /// A BRDF, and the first word of all names; see [`check_name`].
     pub(super) fn new(name: &'a str, fitted: &'a Fitted) -> Result<Self, NameError> {
-        let letter = |c: char| c.is_ascii_alphabetic();
-        let word = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric());
-        let first = name.split('_').next();
-        if name.starts_with(letter) && name.split('_').all(word) && first != Some("gl") {
-            let sampler = Sampler::new(&fitted.brdf);
-            Ok(Self {
-                name,
-                fitted,
-                specular_weights: sampler.specular_weights().to_vec(),
-            })
-        } else {
-            Err(NameError(name.to_owned()))
-        }
+        check_name(name)?;
+        let sampler = Sampler::new(&fitted.brdf);
+        Ok(Self {
+            name,
+            fitted,
+            specular_weights: sampler.specular_weights().to_vec(),
+        })
     }
 
     /// A file.

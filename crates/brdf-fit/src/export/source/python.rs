@@ -6,7 +6,7 @@ use super::{Parts, Source};
 
 /// The module whose functions are called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::export) enum Module {
+enum Module {
     /// NumPy, `import numpy as np`.
     NumPy,
     /// Dr.Jit, `import drjit as dr`.
@@ -22,27 +22,24 @@ pub(super) fn numpy(source: &Source) -> String {
     source.file(&dialect, &NUMPY)
 }
 
-/// Constants and functions without a file about them, their names beginning with that of the
-/// source, so that several fit into one file. For the user there are, directions being sequences
-/// of their three components (z along the surface normal) and angles in radians:
+/// Functions over numbers and arrays of Dr.Jit, below the words about them, their names beginning
+/// with that of the source, so that several fit into one file. For the user there are, directions
+/// being sequences of their three components (z along the surface normal) and angles in radians:
 ///
 /// ```text
 /// NAME_of_angles(psi, theta, phi)     f_r in 1/sr
 /// NAME_of_directions(source, view)    f_r in 1/sr, 0 below the surface
 /// NAME_density(source, view)          the density of the views that are drawn, in 1/sr
+/// NAME_mirrored_density(source, view) that of the views that facets mirror
 /// NAME_draw(source, numbers)          a view from three random numbers
 /// NAME_weight(source, view)           f_r cos theta / density
 /// ```
-pub(in crate::export) fn functions(source: &Source, module: Module) -> String {
+pub(in crate::export) fn drjit(source: &Source) -> String {
     let dialect = Python {
         name: source.name,
-        module,
+        module: Module::DrJit,
     };
-    let parts = match module {
-        Module::NumPy => &NUMPY,
-        Module::DrJit => &DR_JIT,
-    };
-    source.functions(&dialect, parts)
+    source.file(&dialect, &DR_JIT)
 }
 
 const NUMPY: Parts = Parts {
@@ -56,7 +53,7 @@ const NUMPY: Parts = Parts {
 /// Of a file of this the head and the end are written elsewhere.
 const DR_JIT: Parts = Parts {
     conventions: "",
-    opening: "",
+    opening: "\n",
     constants: DR_JIT_CONSTANTS,
     specular_weight: DR_JIT_SPECULAR_WEIGHT,
     closing: "",
@@ -236,7 +233,7 @@ mod tests {
                 psi_max_deg: 70.0,
             };
             let source = Source::new("red", &fitted).unwrap();
-            let [numpy, drjit] = [Module::NumPy, Module::DrJit].map(|m| functions(&source, m));
+            let (numpy, drjit) = (numpy(&source), drjit(&source));
             assert!(numpy.contains("np.where(") && !numpy.contains("dr."));
             assert!(drjit.contains("dr.select(") && !drjit.contains("np."));
         }

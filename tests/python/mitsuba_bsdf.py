@@ -1,0 +1,141 @@
+"""
+What the real Mitsuba makes of exported plugins: reads a job as JSON from standard input, writes what
+it found as JSON to standard output. The job names a variant and steps, each of one plugin.
+"""
+
+import contextlib
+import importlib.util
+import json
+import sys
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+
+def bsdf(path):
+    """The BSDF of a plugin file, registered with the current variant."""
+    spec = importlib.util.spec_from_file_location("plugin", path)
+    plugin = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(plugin)
+    plugin.register()
+    return plugin.NAME, mi.load_dict({"type": plugin.NAME})
+
+
+def interaction(wi):
+    si = dr.zeros(mi.SurfaceInteraction3f, 1 if mi.variant().startswith("scalar") else dr.width(wi))
+    si.wi = wi
+    return si
+
+
+def numbers(value):
+    """A list of what may be a number or an array of one."""
+    return [float(v) for v in value] if hasattr(value, "__len__") else [float(value)]
+
+
+def vectors(directions):
+    """Directions as Mitsuba takes them: one by one in scalar variants, all at once in others."""
+    if mi.variant().startswith("scalar"):
+        return [mi.Vector3f(direction) for direction in directions]
+    return [mi.Vector3f([mi.Float(column) for column in zip(*directions)])]
+
+
+def points(path, wi, wo, wavelengths=()):
+    """
+    f_r cos theta of the channels and the density, from `eval` and `pdf` and from `eval_pdf`. In
+    spectral variants the channels are those of the wavelengths, in nm.
+    """
+    _, material = bsdf(path)
+    ctx, found = mi.BSDFContext(), {"channels": [[] for _ in mi.Spectrum(0)], "pdf": []}
+    for source, view in zip(vectors(wi), vectors(wo)):
+        si = interaction(source)
+        if mi.is_spectral:
+            si.wavelengths = mi.Spectrum(wavelengths)
+        value, pdf = material.eval(ctx, si, view), material.pdf(ctx, si, view)
+        both = material.eval_pdf(ctx, si, view)
+        assert dr.all(dr.all(both[0] == value) & (both[1] == pdf))
+        for channel, values in zip(found["channels"], value):
+            channel += numbers(values)
+        found["pdf"] += numbers(pdf)
+    return found
+
+
+def context(component):
+    ctx = mi.BSDFContext()
+    if component is not None:
+        ctx.component = component
+    return ctx
+
+
+def chi2(path, pdf_of, wi, component, tests, seed):
+    """
+    Mitsuba's chi-square test of `sample` against the `pdf` of the same plugin, or of another one.
+    """
+    from mitsuba.chi2 import BSDFAdapter, ChiSquareTest, SphericalDomain
+
+    def functions(path):
+        name, _ = bsdf(path)
+        return BSDFAdapter(name, "", wi=wi, ctx=context(component))
+
+    test = ChiSquareTest(
+        domain=SphericalDomain(),
+        sample_func=functions(path)[0],
+        pdf_func=functions(pdf_of)[1],
+        sample_dim=3,
+        ires=16,
+        seed=seed,
+    )
+    accepted = bool(test.run(0.01, tests, quiet=True))
+    return {"accepted": accepted, "p": float(test.p_value), "words": test.messages}
+
+
+def weights(path, wi, count, component):
+    """The mean of the weights of samples, of each channel, and its standard error."""
+    _, material = bsdf(path)
+    sampler = mi.load_dict({"type": "independent"})
+    scalar = mi.variant().startswith("scalar")
+    sampler.seed(1, 1 if scalar else count)
+    si, ctx = interaction(mi.Vector3f(wi)), context(component)
+    drawn = []
+    for _ in range(count if scalar else 1):
+        _, weight = material.sample(ctx, si, sampler.next_1d(), sampler.next_2d())
+        drawn.append(np.reshape(np.array(weight), (3, -1)))
+    drawn = np.concatenate(drawn, axis=1)
+    error = drawn.std(axis=1) / count**0.5
+    return {"mean": drawn.mean(axis=1).tolist(), "error": error.tolist()}
+
+
+def picture(path, parts):
+    """
+    The size of a picture in pixels, whether all of it are numbers, and the mean red, green and blue
+    of parts of it: left, top, right and bottom as fractions of a side.
+    """
+    values = np.array(mi.Bitmap(path), dtype=float)
+    height, width, _ = values.shape
+
+    def mean(left, top, right, bottom):
+        rows = slice(int(top * height), int(bottom * height))
+        columns = slice(int(left * width), int(right * width))
+        return values[rows, columns].mean(axis=(0, 1)).tolist()
+
+    return {
+        "size": [width, height],
+        "finite": bool(np.isfinite(values).all()),
+        "means": [mean(*part) for part in parts],
+    }
+
+
+STEPS = {"points": points, "chi2": chi2, "weights": weights, "picture": picture}
+
+
+def main():
+    job = json.load(sys.stdin)
+    if job["variant"].startswith("llvm") and not dr.has_backend(dr.JitBackend.LLVM):
+        return json.dump(None, sys.stdout)
+    mi.set_variant(job["variant"])
+    with contextlib.redirect_stdout(sys.stderr):
+        found = [STEPS[step.pop("do")](**step) for step in job["steps"]]
+    json.dump(found, sys.stdout)
+
+
+main()

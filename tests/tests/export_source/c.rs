@@ -175,7 +175,7 @@ fn the_values_of_every_family_are_those_of_the_model() {
     let all = brdfs();
     for (i, of_families) in all.chunks(Family::ALL.len()).enumerate() {
         let k1 = of_families[0].parameters().k1;
-        let points = points(k1, 900);
+        let points = points(k1, 400);
         for options in OPTIONS_DOUBLE {
             for (brdf, found) in of_families.iter().zip(found(of_families, &points, options)) {
                 let errors = Errors::largest(brdf, &points, &found);
@@ -285,8 +285,9 @@ fn below_the_surface_is_0_and_outside_the_domain_no_number() {
             numbers: [0.3; 3],
         });
     let points: Vec<_> = points.collect();
+    let all = brdfs();
     for options in [OPTIONS_DOUBLE[1], OPTIONS_SINGLE[1]] {
-        for found in found(&brdfs(), &points, options).concat() {
+        for found in found(&all[..Family::ALL.len()], &points, options).concat() {
             assert!(found.of_angles.is_nan(), "{found:?}");
             assert_eq!((found.of_directions, found.pdf), (0.0, 0.0));
         }

@@ -81,8 +81,8 @@ struct Frame {
     arguments: Vec<Value>,
     /// Where the local variables begin in the memory.
     locals: HashMap<Handle<LocalVariable>, usize>,
-    /// The expressions that have been evaluated.
-    values: HashMap<Handle<Expression>, Value>,
+    /// The expressions that have been evaluated, by their index.
+    values: Vec<Option<Value>>,
 }
 
 /// The function has ended, with this value.
@@ -108,7 +108,8 @@ impl<'a> Interpreter<'a> {
         let base = self.memory.len();
         let mut frame = Frame {
             arguments,
-            ..Frame::default()
+            locals: HashMap::new(),
+            values: vec![None; function.expressions.len()],
         };
         for (handle, variable) in function.local_variables.iter() {
             let init = variable.init;
@@ -137,9 +138,8 @@ impl<'a> Interpreter<'a> {
         match statement {
             Statement::Emit(range) => {
                 for handle in range.clone() {
-                    frame.values.remove(&handle);
-                    let value = self.evaluate(arena, frame, handle);
-                    frame.values.insert(handle, value);
+                    frame.values[handle.index()] = None;
+                    frame.values[handle.index()] = Some(self.evaluate(arena, frame, handle));
                 }
             }
             Statement::Block(inner) => return self.block(function, frame, inner),
@@ -168,8 +168,8 @@ impl<'a> Interpreter<'a> {
                 let arguments = arguments.iter();
                 let arguments = arguments.map(|a| self.evaluate(arena, frame, *a)).collect();
                 let value = self.run(&self.module.functions[*called], arguments);
-                if let (Some(result), Some(value)) = (result, value) {
-                    frame.values.insert(*result, value);
+                if let Some(result) = result {
+                    frame.values[result.index()] = value;
                 }
             }
             other => panic!("not to be met in these shaders: {other:?}"),
@@ -191,7 +191,7 @@ impl<'a> Interpreter<'a> {
         frame: &Frame,
         handle: Handle<Expression>,
     ) -> Value {
-        if let Some(value) = frame.values.get(&handle) {
+        if let Some(Some(value)) = frame.values.get(handle.index()) {
             return value.clone();
         }
         let mut at = |handle: &Handle<Expression>| self.evaluate(arena, frame, *handle);

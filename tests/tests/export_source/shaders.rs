@@ -80,7 +80,7 @@ fn found(module: &Module, points: &[Point]) -> Vec<Found> {
 fn naga_reads_and_translates_what_has_the_values_of_the_model() {
     for brdf in brdfs() {
         let k1 = brdf.parameters().k1;
-        let points: Vec<_> = points(k1, 60).into_iter().map(Point::single).collect();
+        let points: Vec<_> = points(k1, 50).into_iter().map(Point::single).collect();
         for (language, module) in [("WGSL", wgsl(&brdf)), ("GLSL", glsl(&brdf))] {
             let errors = Errors::largest(&brdf, &points, &found(&module, &points));
             println!("{language} {:?} k1 = {k1}: {errors:?}", brdf.family());

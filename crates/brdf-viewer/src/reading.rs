@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use brdf_fit::Measurements;
-use brdf_fit::read::{Convention, ReadOptions, Side};
+use brdf_fit::read::{Convention, ReadError, ReadOptions, Scan as FileScan, Side};
 use brdf_fit::report::{Document, Report};
 
 use crate::job::Opened;
@@ -51,9 +51,9 @@ fn is_fit(path: &Path) -> bool {
 fn chosen(convention: Convention) -> ReadOptions {
     let other = |side: Side| (side != Side::default()).then_some(side);
     ReadOptions {
-        format: None,
         theta_positive: other(convention.theta_positive),
         phi_zero: other(convention.phi_zero),
+        ..ReadOptions::default()
     }
 }
 
@@ -63,13 +63,18 @@ fn as_before(report: &Report) -> ReadOptions {
         format: Some(report.format),
         theta_positive: Some(report.convention.theta_positive),
         phi_zero: Some(report.convention.phi_zero),
+        ..ReadOptions::default()
     }
 }
 
+/// The scans of a file; of a table, which has no incidences, as a goniometer would have taken them.
 fn read_scan(path: &Path, options: &ReadOptions) -> Result<Vec<Scan>, String> {
-    Measurements::read(path, options)
-        .map(scans)
-        .map_err(|error| error.to_string())
+    let words = |error: ReadError| error.to_string();
+    let scans = FileScan::of_file(path, options).map_err(words)?;
+    let pictured = scans.iter().map(FileScan::pictured);
+    pictured
+        .map(|scan| Ok(Scan::new(scan.map_err(words)?.into_owned())))
+        .collect()
 }
 
 fn read_content(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Scan>, String> {

@@ -35,7 +35,6 @@ pub(crate) fn source(brdf: &AnyBrdf, language: Language, name: &str) -> String {
     let options = ExportOptions {
         name: name.to_owned(),
         ..ExportOptions::default()
-
     };
     let mut bytes = Vec::new();
     export(&coating, Target::Source(language), &options, &mut bytes).expect("a source");

@@ -46,7 +46,7 @@ struct Arguments {
     name: String,
 
     /// The largest relative error of a table, interpolated between its entries
-    #[arg(long, value_name = "ERROR", default_value = "1e-3", value_parser = tolerance)]
+    #[arg(long, value_name = "ERROR", default_value = "3e-2", value_parser = tolerance)]
     tolerance: f64,
 
     /// The angles of csv in degrees, such as "psi=10:70:20 theta=-85:85:1 phi=0,90": FROM:TO:STEP or

@@ -82,7 +82,7 @@ impl Default for ExportOptions {
     fn default() -> Self {
         Self {
             name: "brdf".to_owned(),
-            tolerance: 1e-3,
+            tolerance: 3e-2,
             grid: AngleGrid::default(),
             rgb: None,
         }

@@ -332,6 +332,32 @@ fn the_angles_of_a_file_are_read_as_the_user_says() {
 }
 
 #[test]
+fn scans_of_other_formats_and_their_fits_are_opened() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("beam.astm");
+    let json = folder.path().join("fit.json");
+    let text = "REFRACTIVE_INDEX 1.5\nANGLE_UNIT deg\nVARS theta_i theta_s phi_s BRDF\n\
+                30 30 0 0.9\n30 0 0 0.2\n30 -45 0 0.1\n30 60 0 0.5\n";
+    std::fs::write(&scan, text).unwrap();
+    let check = |window: &Window| {
+        let sample = window.state().state.active_sample().unwrap();
+        let measurements = &sample.scan().measurements;
+        // In the format's coordinates azimuth 0 is forward, without a word in the menu.
+        let theta = measurements.readings()[0].in_plane_theta().unwrap();
+        assert!((theta + 30_f64.to_radians()).abs() < 1e-12);
+        assert_eq!(measurements.format, brdf_fit::read::Format::Astm);
+    };
+    let mut window = empty();
+    open_path(&mut window, &scan);
+    check(&window);
+    click(&mut window, "Stage 1");
+    export_fit(&mut window, &json);
+    menu(&mut window, "File", "Close all samples");
+    open_path(&mut window, &json);
+    check(&window);
+}
+
+#[test]
 fn a_scan_is_not_written_over() {
     let folder = tempfile::tempdir().unwrap();
     let scan = folder.path().join("paint.csv");

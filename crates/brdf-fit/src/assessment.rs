@@ -25,6 +25,9 @@ pub const MARGIN: f64 = 0.1;
 /// An assessment takes about so many readings at the most: it fits some hundred times.
 pub const ASSESSED_READINGS: usize = 4096;
 
+/// The same of a table, the channels of which are assessed one after the other.
+pub const ASSESSED_BINS: usize = 2048;
+
 /// Below this E nothing but rounding is left.
 const ROUNDING_PERCENT: f64 = 1e-18;
 
@@ -37,7 +40,8 @@ const TOLERANCE: f64 = 1e-4;
 /// What a fit is worth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Assessment {
-    /// How many readings it rests on: all, or about [`ASSESSED_READINGS`] of them.
+    /// How many readings it rests on: all, or about [`ASSESSED_READINGS`] of them
+    /// ([`ASSESSED_BINS`] of a table).
     pub readings: usize,
     /// E of the fit that is assessed, over the readings that it rests on, in percent.
     pub e_percent: f64,
@@ -205,18 +209,45 @@ pub(crate) fn assess_watched(
     let scan = &fit
         .options
         .fitted_readings(accepted)
-        .thinned(ASSESSED_READINGS);
+        .thinned(assessed(measurements));
     let models = if compare {
         Model::ALL.as_slice()
     } else {
         Model::LADDER.as_slice()
     };
     let options = plain(&fit.options);
+    let (made, of_fit) = rayon::join(
+        || {
+            let rungs = models.par_iter();
+            let rungs = rungs.map(|&model| (model, rung(scan, model, &options, &progress)));
+            rungs.collect::<Vec<_>>()
+        },
+        || Worth::of(scan, &options, &progress),
+    );
+    let (rungs, left_out) = sorted(made)?;
+    let worth = of_fit?;
+    Ok(Assessment {
+        readings: scan.readings().len(),
+        e_percent: worth.e_percent,
+        bootstrap: worth.bootstrap,
+        prediction: worth.prediction,
+        physics: Physics::of(fit.model(), &fit.at()).ok_or_else(|| {
+            FitError::Solver("the fit ended outside of the model's domain".to_owned())
+        })?,
+        verdict: verdict(&rungs),
+        models: rungs,
+        left_out,
+    })
+}
+
+/// The rungs of the ladder, and the models that could not be fitted.
+///
+/// Errors: the assessment was cancelled.
+fn sorted(
+    made: Vec<(Model, Result<Rung, FitError>)>,
+) -> Result<(Vec<Rung>, Vec<LeftOut>), FitError> {
     let (mut rungs, mut left_out) = (Vec::new(), Vec::new());
-    let made = models
-        .par_iter()
-        .map(|&model| (model, rung(scan, model, &options, &progress)));
-    for (model, rung) in made.collect::<Vec<_>>() {
+    for (model, rung) in made {
         match rung {
             Ok(rung) => rungs.push(rung),
             Err(FitError::Cancelled) => return Err(FitError::Cancelled),
@@ -231,22 +262,40 @@ pub(crate) fn assess_watched(
     for rung in &mut rungs {
         rung.aicc_above_best = rung.aicc_above_best.map(|aicc| aicc - best);
     }
+    Ok((rungs, left_out))
+}
 
-    let fitted = fit_scan(scan, &options, &progress)?;
-    let search = fitted.search(&progress)?;
-    let (model, at) = (options.held_model(), fitted.fit.at());
-    Ok(Assessment {
-        readings: scan.readings().len(),
-        e_percent: fitted.fit.e_percent,
-        bootstrap: bootstrap(&fitted.criterion, &search, model, &at, &progress)?,
-        prediction: leave_one_out(&fitted.criterion, &search, model, &at, &progress)?,
-        physics: Physics::of(fit.model(), &fit.at()).ok_or_else(|| {
-            FitError::Solver("the fit ended outside of the model's domain".to_owned())
-        })?,
-        verdict: verdict(&rungs),
-        models: rungs,
-        left_out,
-    })
+/// What the readings that are assessed say of the fit of them.
+struct Worth {
+    e_percent: f64,
+    bootstrap: Vec<Spread>,
+    prediction: Option<Prediction>,
+}
+
+impl Worth {
+    fn of(
+        scan: &Measurements,
+        options: &FitOptions,
+        progress: &Progress<'_>,
+    ) -> Result<Self, FitError> {
+        let fitted = fit_scan(scan, options, progress)?;
+        let search = fitted.search(progress)?;
+        let (model, at) = (options.held_model(), fitted.fit.at());
+        Ok(Self {
+            e_percent: fitted.fit.e_percent,
+            bootstrap: bootstrap(&fitted.criterion, &search, model, &at, progress)?,
+            prediction: leave_one_out(&fitted.criterion, &search, model, &at, progress)?,
+        })
+    }
+}
+
+/// How many readings are assessed at the most.
+fn assessed(measurements: &Measurements) -> usize {
+    if measurements.is_table() {
+        ASSESSED_BINS
+    } else {
+        ASSESSED_READINGS
+    }
 }
 
 /// The readings that a robust fit does not reject; `None` where none are rejected.
@@ -279,7 +328,7 @@ pub(crate) fn sufficient_model(
     let progress = Progress::begin(watch, Phase::Assessment)?;
     let scan = options
         .fitted_readings(measurements)
-        .thinned(ASSESSED_READINGS);
+        .thinned(assessed(measurements));
     let options = plain(options);
     let mut rungs = Vec::new();
     for model in Model::LADDER {

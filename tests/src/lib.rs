@@ -12,7 +12,7 @@ mod python;
 pub mod samples;
 pub mod textbook;
 
-pub use python::python;
+pub use python::{python, run_python};
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,7 +1,10 @@
 //! A Python that has what a test needs.
 
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+
+use serde_json::Value;
 
 use crate::in_workspace;
 
@@ -24,6 +27,32 @@ pub fn python(module: &str) -> Option<PathBuf> {
     });
     if found.is_none() {
         println!("no python with {module}: skipped");
+    }
+    found
+}
+
+/// What a script of `tests/python` makes of a job, which it reads from standard input; both are JSON.
+/// `None`, and "skipped" on standard output, where no Python has the module, and where the script
+/// writes null: it found no LLVM.
+pub fn run_python(module: &str, script: &str, job: &Value) -> Option<Value> {
+    let mut program = Command::new(python(module)?)
+        .arg(in_workspace("tests/python").join(script))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("python starts");
+    let (job, input) = (job.to_string(), program.stdin.take());
+    let mut input = input.expect("a pipe to python");
+    let written = std::thread::spawn(move || input.write_all(job.as_bytes()));
+    let output = program.wait_with_output().expect("python ends");
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{complaint}");
+    let written = written.join().expect("the job is written");
+    written.expect("python reads the job");
+    let found: Option<Value> = serde_json::from_slice(&output.stdout).expect("JSON");
+    if found.is_none() {
+        println!("skipped: no LLVM for {script}");
     }
     found
 }

@@ -4,13 +4,12 @@
 
 use std::f64::consts::PI;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Sampler};
 use brdf_fit::export::{Coating, Fitted};
-use brdf_tests::{export_command, generator, in_workspace, python, run_fit};
+use brdf_tests::{export_command, generator, in_workspace, python, run_fit, run_python};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -77,24 +76,9 @@ fn stderr(output: &Output) -> String {
 /// What Mitsuba finds in a variant, step by step. `None`, and "skipped" on standard output, where
 /// there is no Mitsuba or no LLVM for it.
 fn mitsuba(variant: &str, steps: &[Value]) -> Option<Vec<Value>> {
-    let mut program = Command::new(python("mitsuba")?)
-        .arg(in_workspace("tests/python/mitsuba_bsdf.py"))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let job = json!({ "variant": variant, "steps": steps }).to_string();
-    let mut input = program.stdin.take().unwrap();
-    let written = std::thread::spawn(move || input.write_all(job.as_bytes()));
-    let output = program.wait_with_output().unwrap();
-    assert!(output.status.success(), "{}", stderr(&output));
-    written.join().unwrap().unwrap();
-    let found: Option<Vec<Value>> = serde_json::from_slice(&output.stdout).unwrap();
-    if found.is_none() {
-        println!("skipped: no LLVM for {variant}");
-    }
-    found
+    let job = json!({ "variant": variant, "steps": steps });
+    let found = run_python("mitsuba", "mitsuba_bsdf.py", &job)?;
+    Some(found.as_array().unwrap().clone())
 }
 
 fn numbers(value: &Value) -> Vec<f64> {

@@ -45,9 +45,10 @@ struct Arguments {
     #[arg(long, value_name = "WORD", default_value = "brdf")]
     name: String,
 
-    /// The largest relative error of a table, interpolated between its entries
-    #[arg(long, value_name = "ERROR", default_value = "3e-2", value_parser = tolerance)]
-    tolerance: f64,
+    /// The largest relative error of a table, interpolated between its entries, of merl in the
+    /// nearest bin [default: 3e-2; merl: any]
+    #[arg(long, value_name = "ERROR", value_parser = tolerance)]
+    tolerance: Option<f64>,
 
     /// The angles of csv in degrees, such as "psi=10:70:20 theta=-85:85:1 phi=0,90": FROM:TO:STEP or
     /// numbers between commas [default: psi=0:70:10 theta=-80:80:5 phi=0]
@@ -75,15 +76,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (input, output) = (arguments.fits.as_path(), arguments.output.as_deref());
     let beside = arguments.beside()?;
     let outputs = output.into_iter().chain(beside.as_deref());
-    check_outputs([input], outputs).map_err(|error| error.to_string())?;
-    let coating = arguments.coating().map_err(|message| {
-        let path = input.display();
-        if message.starts_with(&path.to_string()) {
-            message
-        } else {
-            format!("{path}: {message}")
-        }
-    })?;
+    check_outputs([input], outputs).map_err(words)?;
+    let coating = arguments.coating()?;
     let options = ExportOptions {
         name: arguments.name.clone(),
         tolerance: arguments.tolerance,
@@ -91,23 +85,36 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         rgb: arguments.rgb,
     };
     let (mut bytes, mut bytes_beside) = (Vec::new(), Vec::new());
-    export(&coating, arguments.to, &options, &mut bytes)
-        .and_then(|()| export_beside(arguments.to, &options, &mut bytes_beside))
-        .map_err(|error| error.to_string())?;
-    match (output, beside) {
-        (None, _) => output::print(&bytes).map_err(|error| format!("standard output: {error}")),
-        (Some(path), None) => write(path, &bytes),
-        (Some(path), Some(beside)) => {
-            write(&beside, &bytes_beside)?;
-            write(path, &bytes)?;
-            let said = format!("written: {}, {}\n", path.display(), beside.display());
-            output::print(said.as_bytes()).map_err(|error| format!("standard output: {error}"))
-        }
+    let error = export(&coating, arguments.to, &options, &mut bytes).map_err(words)?;
+    export_beside(arguments.to, &options, &mut bytes_beside).map_err(words)?;
+    let Some(path) = output else {
+        return print(&bytes);
+    };
+    let mut said = path.display().to_string();
+    if let Some(beside) = &beside {
+        write(beside, &bytes_beside)?;
+        said += &format!(", {}", beside.display());
+    }
+    write(path, &bytes)?;
+    if let Some(error) = &error {
+        said += &format!("; {error}");
+    }
+    match (beside, error) {
+        (None, None) => Ok(()),
+        _ => print(format!("written: {said}\n").as_bytes()),
     }
 }
 
+fn words(error: impl ToString) -> String {
+    error.to_string()
+}
+
+fn print(bytes: &[u8]) -> Result<(), String> {
+    output::print(bytes).map_err(|error| format!("standard output: {error}"))
+}
+
 fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    write_file(path, |writer| writer.write_all(bytes)).map_err(|error| error.to_string())
+    write_file(path, |writer| writer.write_all(bytes)).map_err(words)
 }
 
 /// Three numbers with commas between them.
@@ -132,13 +139,13 @@ impl Arguments {
 
     /// What is exported.
     fn coating(&self) -> Result<Coating, String> {
-        let all = Coating::read(&self.fits).map_err(|error| error.to_string())?;
+        let all = Coating::read(&self.fits).map_err(words)?;
         let of_file = all.of_file(self.file.as_deref());
         let chosen = of_file.and_then(|coating| match self.wavelength {
             Some(wavelength) => coating.of_wavelength(wavelength),
             None => Ok(coating),
         });
-        chosen.map_err(|error| error.to_string())
+        chosen.map_err(|error| format!("{}: {error}", self.fits.display()))
     }
 }
 

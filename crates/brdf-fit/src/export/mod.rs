@@ -15,6 +15,7 @@ mod zemax;
 
 pub use coating::{Coating, CoatingError, Fitted};
 pub use csv::AngleGrid;
+pub use merl::LookupError;
 pub use rgb::{COLOURS, PRIMARIES_UM, REACH_UM};
 pub use source::{Language, NameError};
-pub use target::{ExportError, ExportOptions, Target, export, export_beside};
+pub use target::{ExportError, ExportOptions, Target, USUAL_TOLERANCE, export, export_beside};

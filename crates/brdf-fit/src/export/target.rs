@@ -7,9 +7,10 @@ use brdf_core::GeometryError;
 
 use super::coating::{Coating, CoatingError};
 use super::csv::AngleGrid;
+use super::merl::{self, LookupError};
 use super::source::{Language, NameError, Source};
 use super::table::{MOST_ENTRIES, Unreachable};
-use super::{astm, csv, merl, mitsuba, zemax};
+use super::{astm, csv, mitsuba, zemax};
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,13 +65,18 @@ impl FromStr for Target {
     }
 }
 
+/// The tolerance of interpolated tables where none is given.
+pub const USUAL_TOLERANCE: f64 = 3e-2;
+
 /// What a form may be told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportOptions {
     /// The first word of the names in source code, and the type of the material in Mitsuba.
     pub name: String,
-    /// The largest error of a table: of f_r interpolated between its entries, relative.
-    pub tolerance: f64,
+    /// The largest error of a table: of f_r interpolated between its entries, relative; of MERL
+    /// tables that of f_r of the nearest bin. Where it is not given, [`USUAL_TOLERANCE`], and of
+    /// MERL tables, whose bins are what they are, any.
+    pub tolerance: Option<f64>,
     /// The angles of our own table.
     pub grid: AngleGrid,
     /// The wavelengths in micrometres that stand for red, green and blue; see [`Coating::rgb`].
@@ -82,7 +88,7 @@ impl Default for ExportOptions {
     fn default() -> Self {
         Self {
             name: "brdf".to_owned(),
-            tolerance: 3e-2,
+            tolerance: None,
             grid: AngleGrid::default(),
             rgb: None,
         }
@@ -106,6 +112,17 @@ pub enum ExportError {
         /// One that can be kept to.
         reachable: f64,
     },
+    /// The bins of a MERL table are too wide for the tolerance.
+    #[error(
+        "the bins of a MERL table, {found}, do not keep to {tolerance:e}: expected no --tolerance, or \
+         another format"
+    )]
+    Bins {
+        /// The tolerance that was asked for.
+        tolerance: f64,
+        /// What the bins keep to.
+        found: LookupError,
+    },
     /// Angles outside the model's domain.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
@@ -126,18 +143,22 @@ impl ExportError {
     }
 }
 
-/// Writes a coating in a form.
+/// Writes a coating in a form. What there is to say of it: the error of a table of fixed bins.
 pub fn export(
     coating: &Coating,
     target: Target,
     options: &ExportOptions,
     writer: &mut dyn Write,
-) -> Result<(), ExportError> {
+) -> Result<Option<LookupError>, ExportError> {
+    let tolerance = options.tolerance.unwrap_or(USUAL_TOLERANCE);
     match target {
-        Target::Merl => merl::write(coating.rgb(options.rgb)?, writer)?,
+        Target::Merl => {
+            let fits = coating.rgb(options.rgb)?;
+            return merl::write(fits, options.tolerance, writer).map(Some);
+        }
         Target::Json => coating.write(writer)?,
-        Target::Astm => astm::write(coating, options.tolerance, writer)?,
-        Target::Zemax => zemax::write(coating.only()?, options.tolerance, writer)?,
+        Target::Astm => astm::write(coating, tolerance, writer)?,
+        Target::Zemax => zemax::write(coating.only()?, tolerance, writer)?,
         Target::Csv => csv::write(coating, &options.grid, writer)?,
         Target::Mitsuba => mitsuba::write_plugin(coating, options, writer)?,
         Target::Source(language) => {
@@ -145,7 +166,7 @@ pub fn export(
             writer.write_all(source.text(language).as_bytes())?;
         }
     }
-    Ok(())
+    Ok(None)
 }
 
 /// Writes the second file of a form that has one ([`Target::beside`]), and nothing for others.

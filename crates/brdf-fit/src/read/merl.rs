@@ -140,7 +140,7 @@ impl Bins {
     ///
     /// tan `theta_d` = |source - view| / |source + view|, and `phi_d` is the azimuth of the source
     /// about the half vector h, from the direction in which h is tilted.
-    fn bin_of(self, [psi, theta, phi]: [f64; 3]) -> [usize; 3] {
+    pub fn bin_of(self, [psi, theta, phi]: [f64; 3]) -> [usize; 3] {
         let source = Vector3::new(psi.sin(), 0.0, psi.cos());
         let view = Vector3::new(
             theta.sin() * phi.cos(),

@@ -63,7 +63,7 @@ pub enum DocumentError {
 }
 
 /// What is wrong, without the place that the message has already.
-fn plain(error: &serde_json::Error) -> String {
+pub(crate) fn plain(error: &serde_json::Error) -> String {
     let text = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     text.strip_suffix(&place).unwrap_or(&text).to_owned()
@@ -98,18 +98,23 @@ impl Document {
             path: path.to_owned(),
             error,
         })?;
+        Self::of_bytes(path, &bytes)
+    }
+
+    /// The same of what is in the file.
+    pub(crate) fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, DocumentError> {
         let json = |error| DocumentError::Json {
             path: path.to_owned(),
             error,
         };
-        let Version { format_version } = serde_json::from_slice(&bytes).map_err(json)?;
+        let Version { format_version } = serde_json::from_slice(bytes).map_err(json)?;
         if !(1..=FORMAT_VERSION).contains(&format_version) {
             return Err(DocumentError::Version {
                 path: path.to_owned(),
                 found: format_version,
             });
         }
-        let document: Self = serde_json::from_slice(&bytes).map_err(json)?;
+        let document: Self = serde_json::from_slice(bytes).map_err(json)?;
         if document.reports.iter().all(|report| report.fit.is_none()) {
             return Err(DocumentError::NoFits {
                 path: path.to_owned(),

@@ -12,6 +12,7 @@ pub use csv::{
     write_parameters, write_theory, write_theory_alone,
 };
 
+pub(crate) use document::plain;
 pub use document::{Document, DocumentError};
 pub use folder::{FolderError, PAGE, figures_of, write_folder};
 pub use html::html;

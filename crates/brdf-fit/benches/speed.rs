@@ -3,9 +3,13 @@
 
 use std::fmt::Write as _;
 use std::hint::black_box;
+use std::io::Cursor;
 use std::path::Path;
 
-use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
+use brdf_core::published::PUBLISHED;
+use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Parameters, ThreeParameterBrdf};
+use brdf_fit::export::{Coating, ExportOptions, Fitted, Target, export};
+use brdf_fit::read::merl::{Channel, Table};
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex, fit};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -216,5 +220,58 @@ fn reading(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, evaluation, fits, reading);
+/// A MERL table of the first row of Table 1: its channels read, and fitted one after the other.
+fn table(c: &mut Criterion) {
+    let bytes = merl_table();
+    let options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(N)),
+        ..FitOptions::default()
+    };
+    let open = || Table::new(Cursor::new(&bytes), "table").expect("a table");
+    let channel = |channel| open().channel(channel).expect("readings");
+    let mut group = c.benchmark_group("MERL table");
+    group.sample_size(10);
+    group.bench_function("three channels read", |b| {
+        b.iter(|| Channel::ALL.map(|one| channel(one).readings().len()));
+    });
+    for (depth, name) in [
+        (
+            Depth::Fit,
+            "three channels read and fitted, with intervals and warnings",
+        ),
+        (
+            Depth::Assessed,
+            "the same with prediction, bootstrap, the ladder and physics",
+        ),
+    ] {
+        group.bench_function(name, |b| {
+            b.iter(|| Channel::ALL.map(|one| Report::of(&channel(one), &options, depth)));
+        });
+    }
+    group.finish();
+}
+
+fn merl_table() -> Vec<u8> {
+    let row = PUBLISHED[0];
+    let parameters = ModelParameters::three(row.parameters, row.n);
+    let fitted = Fitted {
+        file: "table".to_owned(),
+        wavelength_um: None,
+        brdf: AnyBrdf::new(Family::Paper, &parameters).expect("a BRDF"),
+        e_percent: 0.0,
+        psi_max_deg: 90.0,
+    };
+    let mut bytes = Vec::new();
+    let coating = Coating { fits: vec![fitted] };
+    export(
+        &coating,
+        Target::Merl,
+        &ExportOptions::default(),
+        &mut bytes,
+    )
+    .expect("a table");
+    bytes
+}
+
+criterion_group!(benches, evaluation, fits, reading, table);
 criterion_main!(benches);

@@ -24,6 +24,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::Path;
 
 use nalgebra::Vector3;
@@ -344,17 +345,16 @@ impl<R: Read + Seek> Table<R> {
     ///
     /// Errors: a value that is no finite number; a channel without a measured bin.
     pub fn channel(&mut self, channel: Channel) -> Result<Measurements, ReadError> {
-        let (values, bins) = (self.values(channel)?, self.bins);
+        let bins = self.bins;
         let mut readings = Vec::new();
         let (mut not_measured, mut below) = (0, 0);
-        let slabs: Vec<(usize, &[u8])> = values
-            .chunks_exact(VALUE * self.bins.per_slab())
-            .enumerate()
-            .collect();
-        for together in slabs.chunks(SLABS) {
-            let converted: Vec<Slab> = together
-                .par_iter()
-                .map(|(i, values)| Slab::of(bins, channel, *i, values))
+        for first in (0..bins.theta_h).step_by(SLABS) {
+            let together = first..(first + SLABS).min(bins.theta_h);
+            let values = self.values(channel, together.clone())?;
+            let converted: Vec<Slab> = values
+                .par_chunks_exact(VALUE * bins.per_slab())
+                .zip(together)
+                .map(|(values, i)| Slab::of(bins, channel, i, values))
                 .collect::<Result<_, _>>()
                 .map_err(|message| file_error(&self.name, message))?;
             for slab in converted {
@@ -385,7 +385,7 @@ impl<R: Read + Seek> Table<R> {
     ///
     /// Errors: as of [`channel`](Self::channel).
     pub fn scan(&mut self, channel: Channel) -> Result<Measurements, ReadError> {
-        let values = self.values(channel)?;
+        let values = self.values(channel, 0..self.bins.theta_h)?;
         let (values, _) = values.as_chunks::<VALUE>();
         let mut readings = Vec::new();
         let mut not_measured = 0;
@@ -421,10 +421,12 @@ impl<R: Read + Seek> Table<R> {
         })
     }
 
-    /// The bytes of a channel. There are as many in the file.
-    fn values(&mut self, channel: Channel) -> Result<Vec<u8>, ReadError> {
-        let length = VALUE * self.bins.count();
-        let start = (HEADER + channel as usize * length) as u64;
+    /// The bytes of a channel, of these slabs of one `theta_h` each. There are as many in the file.
+    fn values(&mut self, channel: Channel, slabs: Range<usize>) -> Result<Vec<u8>, ReadError> {
+        let slab = VALUE * self.bins.per_slab();
+        let length = slab * slabs.len();
+        let before = channel as usize * VALUE * self.bins.count() + slab * slabs.start;
+        let start = (HEADER + before) as u64;
         let mut values = Vec::with_capacity(length);
         let read = self.reader.seek(SeekFrom::Start(start)).and_then(|_| {
             let mut rest = self.reader.by_ref().take(length as u64);

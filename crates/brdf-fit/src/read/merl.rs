@@ -40,6 +40,10 @@ const HEADER: usize = 12;
 /// Bytes of a value.
 const VALUE: usize = 8;
 
+/// More bins in a channel, of which the database has 1.5 million, are no table: a file without
+/// content can be of any size, and their readings would take more than 1 GB.
+const MOST_BINS: usize = 1 << 24;
+
 /// Slabs of one `theta_h` that are converted together.
 const SLABS: usize = 8;
 
@@ -523,6 +527,11 @@ fn checked_bins(header: &[u8; HEADER], size: u64) -> Result<Bins, String> {
              90 x 90 x 180"
         ));
     };
+    if bins.count() > MOST_BINS {
+        return Err(format!(
+            "{theta_h} x {theta_d} x {phi_d} bins: expected no more than {MOST_BINS} in a channel"
+        ));
+    }
     if expected == size {
         return Ok(bins);
     }
@@ -646,7 +655,10 @@ mod tests {
         );
         // More bytes than there are numbers for, and than there is memory for.
         assert!(error(&header([i32::MAX; 3])).contains("expected three positive numbers"));
-        assert!(error(&header([i32::MAX, 1 << 20, 1])).contains("is truncated"));
+        assert!(error(&header([i32::MAX, 1 << 20, 1])).contains(
+            "2147483647 x 1048576 x 1 bins: expected no more than 16777216 in a channel"
+        ));
+        assert!(error(&header([1 << 12, 1 << 12, 1])).contains("is truncated"));
         let too_long = [bytes(SMALL), vec![0]].concat();
         assert!(
             error(&too_long)

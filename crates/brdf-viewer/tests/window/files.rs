@@ -358,6 +358,35 @@ fn scans_of_other_formats_and_their_fits_are_opened() {
 }
 
 #[test]
+fn a_table_is_opened_as_a_goniometer_would_have_scanned_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = folder.path().join("paint.binary");
+    // 6 x 5 x 8 bins of three channels, that of each channel with a value of its own.
+    let mut bytes = [6_i32, 5, 8].map(i32::to_le_bytes).concat();
+    for value in [150.0_f64, 300.0, 450.0] {
+        bytes.extend((0..240).flat_map(|bin| (value + f64::from(bin)).to_le_bytes()));
+    }
+    std::fs::write(&table, bytes).unwrap();
+    let mut window = empty();
+    open_path(&mut window, &table);
+    let sample = window.state().state.active_sample().unwrap();
+    let wavelengths: Vec<_> = sample
+        .scans
+        .iter()
+        .map(|scan| scan.wavelength_um())
+        .collect();
+    assert_eq!(wavelengths, [0.464, 0.549, 0.611].map(Some));
+    let incidences: Vec<f64> = sample
+        .scan()
+        .incidences
+        .iter()
+        .map(|i| i.psi.to_degrees())
+        .collect();
+    assert_eq!(incidences.len(), 9);
+    assert!((incidences[8] - 80.0).abs() < 1e-9);
+}
+
+#[test]
 fn a_scan_is_not_written_over() {
     let folder = tempfile::tempdir().unwrap();
     let scan = folder.path().join("paint.csv");

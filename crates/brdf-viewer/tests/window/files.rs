@@ -373,7 +373,7 @@ fn a_table_is_opened_as_a_goniometer_would_have_scanned_it() {
     let wavelengths: Vec<_> = sample
         .scans
         .iter()
-        .map(|scan| scan.wavelength_um())
+        .map(brdf_viewer::state::sample::Scan::wavelength_um)
         .collect();
     assert_eq!(wavelengths, [0.464, 0.549, 0.611].map(Some));
     let incidences: Vec<f64> = sample

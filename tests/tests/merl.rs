@@ -2,6 +2,7 @@
 //! the real Mitsuba, and looked up as the reference code of the database does. Skipped where there is
 //! no Python with mitsuba or NumPy, or no LLVM for Mitsuba.
 
+use std::f64::consts::TAU;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -482,7 +483,7 @@ fn a_lookup_as_in_the_reference_code_finds_f_r_within_the_error_that_was_said() 
     let mut angle = |to: f64| random.random_range(0.0..to);
     let limit = 85.0_f64.to_radians();
     let at: Vec<[f64; 3]> = (0..20_000)
-        .map(|_| [angle(limit), angle(limit), angle(6.28)])
+        .map(|_| [angle(limit), angle(limit), angle(TAU)])
         .collect();
     let Some(found) = found("numpy", "merl_lookup.py", None, &at) else {
         return;

@@ -76,7 +76,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (input, output) = (arguments.fits.as_path(), arguments.output.as_deref());
     let beside = arguments.beside()?;
     let outputs = output.into_iter().chain(beside.as_deref());
-    check_outputs([input], outputs).map_err(words)?;
+    check_outputs([input], outputs).map_err(|error| error.to_string())?;
     let coating = arguments.coating()?;
     let options = ExportOptions {
         name: arguments.name.clone(),
@@ -85,28 +85,26 @@ fn run(arguments: &Arguments) -> Result<(), String> {
         rgb: arguments.rgb,
     };
     let (mut bytes, mut bytes_beside) = (Vec::new(), Vec::new());
-    let error = export(&coating, arguments.to, &options, &mut bytes).map_err(words)?;
-    export_beside(arguments.to, &options, &mut bytes_beside).map_err(words)?;
+    let found = export(&coating, arguments.to, &options, &mut bytes);
+    let found = found.map_err(|error| error.to_string())?;
+    export_beside(arguments.to, &options, &mut bytes_beside).map_err(|error| error.to_string())?;
     let Some(path) = output else {
         return print(&bytes);
     };
-    let mut said = path.display().to_string();
     if let Some(beside) = &beside {
         write(beside, &bytes_beside)?;
-        said += &format!(", {}", beside.display());
     }
     write(path, &bytes)?;
-    if let Some(error) = &error {
-        said += &format!("; {error}");
-    }
-    match (beside, error) {
+    let path = path.display();
+    match (beside, found) {
+        (Some(beside), _) => say(&format!("written: {path}, {}", beside.display())),
+        (None, Some(found)) => say(&format!("written: {path}; {found}")),
         (None, None) => Ok(()),
-        _ => print(format!("written: {said}\n").as_bytes()),
     }
 }
 
-fn words(error: impl ToString) -> String {
-    error.to_string()
+fn say(line: &str) -> Result<(), String> {
+    print(format!("{line}\n").as_bytes())
 }
 
 fn print(bytes: &[u8]) -> Result<(), String> {
@@ -114,7 +112,7 @@ fn print(bytes: &[u8]) -> Result<(), String> {
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    write_file(path, |writer| writer.write_all(bytes)).map_err(words)
+    write_file(path, |writer| writer.write_all(bytes)).map_err(|error| error.to_string())
 }
 
 /// Three numbers with commas between them.
@@ -139,7 +137,7 @@ impl Arguments {
 
     /// What is exported.
     fn coating(&self) -> Result<Coating, String> {
-        let all = Coating::read(&self.fits).map_err(words)?;
+        let all = Coating::read(&self.fits).map_err(|error| error.to_string())?;
         let of_file = all.of_file(self.file.as_deref());
         let chosen = of_file.and_then(|coating| match self.wavelength {
             Some(wavelength) => coating.of_wavelength(wavelength),

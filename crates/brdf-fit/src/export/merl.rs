@@ -84,7 +84,7 @@ fn value(brdf: &AnyBrdf, [psi, theta, phi]: [f64; 3]) -> Option<f64> {
 impl LookupError {
     fn of(brdfs: [&AnyBrdf; 3]) -> Self {
         let channels = brdfs.map(|brdf| {
-            let even = lookup_errors(brdf, direction_pair);
+            let even = lookup_errors(brdf, |number| Some(direction_pair(number)));
             let of_table = lookup_errors(brdf, table_pair);
             let largest = even.iter().chain(&of_table).copied().fold(0.0, f64::max);
             (median(even), largest)
@@ -101,7 +101,7 @@ impl LookupError {
 }
 
 /// The errors at direction pairs. A bin without a value is read as 0.
-fn lookup_errors(brdf: &AnyBrdf, pair: fn(u32) -> Option<[f64; 3]>) -> Vec<f64> {
+fn lookup_errors(brdf: &AnyBrdf, pair: impl Fn(u32) -> Option<[f64; 3]> + Sync) -> Vec<f64> {
     let bins = Bins::USUAL;
     let error = |number: u32| {
         let at = pair(number)?;
@@ -120,10 +120,10 @@ fn median(mut errors: Vec<f64>) -> f64 {
 }
 
 /// psi, theta and phi in radians, even up to the limit.
-fn direction_pair(number: u32) -> Option<[f64; 3]> {
+fn direction_pair(number: u32) -> [f64; 3] {
     let limit = LIMIT_DEG.to_radians();
     let [psi, theta, phi] = even(number);
-    Some([psi * limit, theta * limit, phi * PI])
+    [psi * limit, theta * limit, phi * PI]
 }
 
 /// Psi, theta and phi in radians, even over the table; `None` beyond the limit.
@@ -248,10 +248,8 @@ mod tests {
     #[test]
     fn every_direction_up_to_the_limit_has_a_bin_above_the_surface() {
         for number in 0..LOOKUPS {
-            for at in [direction_pair(number), table_pair(number)]
-                .into_iter()
-                .flatten()
-            {
+            let pairs = [Some(direction_pair(number)), table_pair(number)];
+            for at in pairs.into_iter().flatten() {
                 assert!(at[0].max(at[1]) <= LIMIT_DEG.to_radians());
                 let bin = Bins::USUAL.bin_of(at);
                 assert!(Bins::USUAL.middle(bin).is_some(), "{at:?}");

@@ -421,10 +421,19 @@ mod tests {
     #[test]
     fn parameters_outside_the_domain_are_named_with_file_and_scan() {
         let document = Document::new(vec![report("x.csv", 0.5, 1.5)]);
-        let mut value = serde_json::to_value(&document).unwrap();
-        value["reports"][0]["fit"]["parameters"]["k1"] = json!(-1.0);
-        let said = Folder::new().refused(&serde_json::to_vec(&value).unwrap());
-        assert!(said.contains("k1") && said.contains("-1"), "{said}");
+        let refused = |key: &str, wrong: &Value| {
+            let mut value = serde_json::to_value(&document).unwrap();
+            let fit = &mut value["reports"][0]["fit"];
+            *fit.pointer_mut(key).unwrap() = wrong.clone();
+            Folder::new().refused(&serde_json::to_vec(&value).unwrap())
+        };
+        let said = refused("/parameters/k1", &json!(-1.0));
+        assert!(said.contains("k1 = -1: expected a number in"), "{said}");
+        let said = refused("/n", &json!(0.5));
+        assert!(
+            said.starts_with(", the fit of x.csv: refractive index"),
+            "{said}"
+        );
     }
 
     #[test]

@@ -175,15 +175,23 @@ impl Bins {
 
     /// The direction pair in the middle of a bin as psi, theta and phi in radians; `None` where one
     /// of them is not above the surface.
+    pub fn middle(self, [i, j, k]: [usize; 3]) -> Option<[f64; 3]> {
+        let part = |index: usize, bins: usize| (index as f64 + 0.5) / bins as f64;
+        Self::directions([
+            part(i, self.theta_h),
+            part(j, self.theta_d),
+            part(k, self.phi_d),
+        ])
+    }
+
+    /// The same at a place of the table, from 0 to 1 along each of its axes.
     ///
     /// With h = (sin `theta_h`, 0, cos `theta_h`), the source is the direction (`theta_d`, `phi_d`)
     /// turned from the normal to h, and the view its mirror image about h.
-    pub fn middle(self, [i, j, k]: [usize; 3]) -> Option<[f64; 3]> {
-        let part = |index: usize, bins: usize| (index as f64 + 0.5) / bins as f64;
-        let root = part(i, self.theta_h);
-        let (sin_h, cos_h) = (FRAC_PI_2 * root * root).sin_cos();
-        let (sin_d, cos_d) = (FRAC_PI_2 * part(j, self.theta_d)).sin_cos();
-        let (sin_phi, cos_phi) = (PI * part(k, self.phi_d)).sin_cos();
+    pub(crate) fn directions([root_h, part_d, part_phi]: [f64; 3]) -> Option<[f64; 3]> {
+        let (sin_h, cos_h) = (FRAC_PI_2 * root_h * root_h).sin_cos();
+        let (sin_d, cos_d) = (FRAC_PI_2 * part_d).sin_cos();
+        let (sin_phi, cos_phi) = (PI * part_phi).sin_cos();
         let along = sin_d * cos_phi;
         let source = [
             along * cos_h + cos_d * sin_h,

@@ -29,6 +29,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::detect::HEAD;
 use super::{Convention, Format, ReadError, ReadOptions, text};
 use crate::measurement::{Measurement, Measurements};
 use crate::words::counted;
@@ -250,20 +251,23 @@ fn place(position: f64, bins: usize) -> usize {
     bin.min(bins - 1)
 }
 
-/// Whether a file is read as a table: because the options say so, or its content, or its name.
+/// Whether a file is read as a table, a channel at a time: because the options say so, or its
+/// content, or its name. What is no file but a pipe is not: what is looked at of it is gone.
 pub(super) fn is_table(path: &Path, options: &ReadOptions) -> bool {
-    if let Some(format) = options.format {
-        return format == Format::Merl;
-    }
-    let start = File::open(path).and_then(|mut file| {
-        let mut start = [0; HEADER];
-        file.read_exact(&mut start)?;
-        Ok((start, file.metadata()?.len()))
-    });
-    let named = path
-        .extension()
-        .is_some_and(|extension| extension == "binary");
-    start.map_or(named, |(start, size)| named || recognises(&start, size))
+    let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
+    is_file
+        && match options.format {
+            Some(format) => format == Format::Merl,
+            None => begins_as_table(path).unwrap_or(false),
+        }
+}
+
+fn begins_as_table(path: &Path) -> io::Result<bool> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    let mut head = Vec::new();
+    file.take(HEAD).read_to_end(&mut head)?;
+    Ok(recognises(&head, size) || Format::detect(&head, path) == Some(Format::Merl))
 }
 
 /// Whether the beginning of a file and its size are those of a table, in either order of bytes.

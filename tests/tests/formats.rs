@@ -219,8 +219,8 @@ fn a_file_of_no_known_format_says_which_are_known() {
         "angle value\n10 0.1\nx 0.2\n",
         &[],
         ", line 1: missing column psi_deg and theta_deg and brdf_per_sr: expected a header with \
-         psi_deg, theta_deg and brdf_per_sr, found \"angle value\"; known formats are csv, astm, \
-         zemax, black-lab, goniometer",
+         psi_deg, theta_deg and brdf_per_sr, found \"angle value\"; known formats are csv, merl, \
+         astm, zemax, black-lab, goniometer",
     );
 }
 

@@ -298,7 +298,7 @@ impl Criterion {
         let step = self.len().div_ceil(limit);
         // Condensed rows come in threes, a triangle of each cell: the same row of each would stand
         // for no readings.
-        let of_threes = self.readings.is_empty() && step % 3 == 0;
+        let of_threes = self.readings.is_empty() && step.is_multiple_of(3);
         self.picked(self.segments.iter(), step + usize::from(of_threes))
     }
 

@@ -368,8 +368,7 @@ impl<R: Read + Seek> Table<R> {
             }
         }
         if readings.is_empty() {
-            let message = format!("has no measured bin in {}", channel.name());
-            return Err(file_error(&self.name, message));
+            return Err(file_error(&self.name, nothing_measured(channel)));
         }
         let mut conversions = vec![conversion(channel)];
         conversions.extend(left_out(not_measured, below));
@@ -399,6 +398,10 @@ impl<R: Read + Seek> Table<R> {
                 let [i, j, k] = self.bins.bin_of([psi, theta, 0.0]);
                 let bin = (i * self.bins.theta_d + j) * self.bins.phi_d + k;
                 let value = f64::from_le_bytes(values[bin]);
+                if !value.is_finite() {
+                    let message = not_finite(channel, [i, j, k], value);
+                    return Err(file_error(&self.name, message));
+                }
                 if value < 0.0 {
                     not_measured += 1;
                     continue;
@@ -412,6 +415,9 @@ impl<R: Read + Seek> Table<R> {
                     sigma: None,
                 });
             }
+        }
+        if readings.is_empty() {
+            return Err(file_error(&self.name, nothing_measured(channel)));
         }
         let conversions = [scan_conversion(channel)]
             .into_iter()
@@ -458,11 +464,7 @@ impl Slab {
             let (j, k) = (bin / bins.phi_d, bin % bins.phi_d);
             let value = f64::from_le_bytes(*value);
             if !value.is_finite() {
-                return Err(format!(
-                    "{}, bin ({i}, {j}, {k}): {value} is not a finite number: expected \
-                     f_r, or a negative number for a bin that was not measured",
-                    channel.name()
-                ));
+                return Err(not_finite(channel, [i, j, k], value));
             }
             match bins.middle([i, j, k]) {
                 Some(_) if value < 0.0 => slab.not_measured += 1,
@@ -480,6 +482,18 @@ impl Slab {
         }
         Ok(slab)
     }
+}
+
+fn not_finite(channel: Channel, [i, j, k]: [usize; 3], value: f64) -> String {
+    format!(
+        "{}, bin ({i}, {j}, {k}): {value} is not a finite number: expected f_r, or a negative number \
+         for a bin that was not measured",
+        channel.name()
+    )
+}
+
+fn nothing_measured(channel: Channel) -> String {
+    format!("has no measured bin in {}", channel.name())
 }
 
 fn conversion(channel: Channel) -> String {

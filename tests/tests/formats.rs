@@ -2,14 +2,15 @@
 
 use std::ffi::OsStr;
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Output, Stdio};
 
 use brdf_core::Parameters;
 use brdf_fit::read::{Format, ReadOptions};
 use brdf_fit::report::Document;
 use brdf_fit::{Measurement, Measurements};
-use brdf_tests::{export_command, in_workspace, run_fit};
+use brdf_tests::{export_command, fit_command, in_workspace, run_fit};
 
 const BAD: i32 = 2;
 
@@ -218,9 +219,40 @@ fn a_file_of_no_known_format_says_which_are_known() {
         "angle value\n10 0.1\nx 0.2\n",
         &[],
         ", line 1: missing column psi_deg and theta_deg and brdf_per_sr: expected a header with \
-         psi_deg, theta_deg and brdf_per_sr, found \"angle value\"; known formats are csv, astm, \
-         zemax, black-lab, goniometer",
+         psi_deg, theta_deg and brdf_per_sr, found \"angle value\"; known formats are csv, merl, \
+         astm, zemax, black-lab, goniometer",
     );
+}
+
+#[test]
+fn the_content_goes_before_the_extension_of_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("beam.binary");
+    fs::copy(file("beam.astm"), &path).unwrap();
+    let (_, document) = fitted(&path, &["--n", "1.62"]);
+    assert_eq!(document.reports[0].format, Format::Astm);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_read_from_its_first_byte() {
+    let content = "psi_deg,theta_deg,brdf_per_sr\n10,-10,0.1\n10,20,0.2\n30,-30,0.3\n30,0,0.1\n";
+    let mut fit = fit_command()
+        .args(["/dev/stdin", "--n", "1.5", "--model", "lambert"])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Dropped at the end of the statement: the pipe ends.
+    fit.stdin
+        .take()
+        .unwrap()
+        .write_all(content.as_bytes())
+        .unwrap();
+    let output = fit.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("4 readings"));
 }
 
 #[test]

@@ -178,6 +178,8 @@ impl Coating {
     }
 
     /// The fits of one file, the only one where none is named, given by its path or its name.
+    ///
+    /// Errors: there is none, or files of several folders have the name.
     pub fn of_file(self, name: Option<&str>) -> Result<Self, CoatingError> {
         let files = distinct(self.fits.iter().map(|fit| fit.file.clone()));
         let Some(name) = name else {
@@ -196,14 +198,18 @@ impl Coating {
                     .is_some_and(|file| file == name)
         };
         let fits: Vec<Fitted> = self.fits.into_iter().filter(is_named).collect();
-        if fits.is_empty() {
-            let wanted = name.to_owned();
-            return Err(CoatingError::NoSuch {
-                wanted,
+        let named = distinct(fits.iter().map(|fit| fit.file.clone()));
+        match named.len() {
+            0 => Err(CoatingError::NoSuch {
+                wanted: name.to_owned(),
                 found: files,
-            });
+            }),
+            1 => Ok(Self { fits }),
+            _ => Err(CoatingError::Several {
+                option: "file",
+                found: named,
+            }),
         }
-        Ok(Self { fits })
     }
 
     /// The fit nearest to a wavelength in micrometres.
@@ -510,6 +516,12 @@ mod tests {
         let error = coating().of_file(None).unwrap_err().to_string();
         let expected =
             "there are several fits: expected one of a/x.csv, b/y.csv to be chosen with --file";
+        assert_eq!(error, expected);
+        let mut two = coating();
+        two.fits.push(fitted("b/x.csv", Some(0.5), Family::Paper));
+        let error = two.of_file(Some("x.csv")).unwrap_err().to_string();
+        let expected =
+            "there are several fits: expected one of a/x.csv, b/x.csv to be chosen with --file";
         assert_eq!(error, expected);
         let alone = coating().of_file(Some("y.csv")).unwrap();
         assert_eq!(alone.clone().of_file(None).unwrap(), alone);

@@ -42,9 +42,14 @@ impl FromStr for AngleGrid {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut grid = Self::default();
+        let mut given = Vec::new();
         for part in text.split_whitespace() {
             let expected = || format!("\"{part}\": expected psi=, theta= or phi= and degrees");
             let (name, angles) = part.split_once('=').ok_or_else(expected)?;
+            if given.contains(&name) {
+                return Err(format!("\"{part}\": {name} stands there twice"));
+            }
+            given.push(name);
             let (list, limits) = match name {
                 "psi" => (&mut grid.psi_deg, 0.0..90.0),
                 "theta" => (&mut grid.theta_deg, -90.0..90.0),

@@ -9,8 +9,8 @@ use super::{Format, csv, goniometer, merl};
 pub(super) const HEAD: u64 = 65_536;
 
 impl Format {
-    /// The format of a file that begins with these bytes, or that they are where it is binary; `None` where neither they nor the
-    /// extension of its name tell.
+    /// The format of a text that begins with these bytes, or of a table that is all of them; `None`
+    /// where neither they nor the extension of its name tell.
     pub fn detect(head: &[u8], path: &Path) -> Option<Self> {
         if merl::recognises(head, head.len() as u64) {
             return Some(Self::Merl);

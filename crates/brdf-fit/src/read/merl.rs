@@ -30,6 +30,7 @@ use std::path::Path;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
+use super::detect::HEAD;
 use super::{Convention, Format, ReadError, ReadOptions, text};
 use crate::measurement::{Measurement, Measurements};
 use crate::words::counted;
@@ -263,20 +264,23 @@ fn place(position: f64, bins: usize) -> usize {
     bin.min(bins - 1)
 }
 
-/// Whether a file is read as a table: because the options say so, or its content, or its name.
+/// Whether a file is read as a table, a channel at a time: because the options say so, or its
+/// content, or its name. What is no file but a pipe is not: what is looked at of it is gone.
 pub(super) fn is_table(path: &Path, options: &ReadOptions) -> bool {
-    if let Some(format) = options.format {
-        return format == Format::Merl;
-    }
-    let start = File::open(path).and_then(|mut file| {
-        let mut start = [0; HEADER];
-        file.read_exact(&mut start)?;
-        Ok((start, file.metadata()?.len()))
-    });
-    let named = path
-        .extension()
-        .is_some_and(|extension| extension == "binary");
-    start.map_or(named, |(start, size)| named || recognises(&start, size))
+    let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
+    is_file
+        && match options.format {
+            Some(format) => format == Format::Merl,
+            None => begins_as_table(path).unwrap_or(false),
+        }
+}
+
+fn begins_as_table(path: &Path) -> io::Result<bool> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    let mut head = Vec::new();
+    file.take(HEAD).read_to_end(&mut head)?;
+    Ok(recognises(&head, size) || Format::detect(&head, path) == Some(Format::Merl))
 }
 
 /// Whether the beginning of a file and its size are those of a table, in either order of bytes.
@@ -376,8 +380,7 @@ impl<R: Read + Seek> Table<R> {
             }
         }
         if readings.is_empty() {
-            let message = format!("has no measured bin in {}", channel.name());
-            return Err(file_error(&self.name, message));
+            return Err(file_error(&self.name, nothing_measured(channel)));
         }
         let mut conversions = vec![conversion(channel)];
         conversions.extend(left_out(not_measured, below));
@@ -407,6 +410,10 @@ impl<R: Read + Seek> Table<R> {
                 let [i, j, k] = self.bins.bin_of([psi, theta, 0.0]);
                 let bin = (i * self.bins.theta_d + j) * self.bins.phi_d + k;
                 let value = f64::from_le_bytes(values[bin]);
+                if !value.is_finite() {
+                    let message = not_finite(channel, [i, j, k], value);
+                    return Err(file_error(&self.name, message));
+                }
                 if value < 0.0 {
                     not_measured += 1;
                     continue;
@@ -420,6 +427,9 @@ impl<R: Read + Seek> Table<R> {
                     sigma: None,
                 });
             }
+        }
+        if readings.is_empty() {
+            return Err(file_error(&self.name, nothing_measured(channel)));
         }
         let conversions = [scan_conversion(channel)]
             .into_iter()
@@ -468,11 +478,7 @@ impl Slab {
             let (j, k) = (bin / bins.phi_d, bin % bins.phi_d);
             let value = f64::from_le_bytes(*value);
             if !value.is_finite() {
-                return Err(format!(
-                    "{}, bin ({i}, {j}, {k}): {value} is not a finite number: expected \
-                     f_r, or a negative number for a bin that was not measured",
-                    channel.name()
-                ));
+                return Err(not_finite(channel, [i, j, k], value));
             }
             match bins.middle([i, j, k]) {
                 Some(_) if value < 0.0 => slab.not_measured += 1,
@@ -490,6 +496,18 @@ impl Slab {
         }
         Ok(slab)
     }
+}
+
+fn not_finite(channel: Channel, [i, j, k]: [usize; 3], value: f64) -> String {
+    format!(
+        "{}, bin ({i}, {j}, {k}): {value} is not a finite number: expected f_r, or a negative number \
+         for a bin that was not measured",
+        channel.name()
+    )
+}
+
+fn nothing_measured(channel: Channel) -> String {
+    format!("has no measured bin in {}", channel.name())
 }
 
 fn conversion(channel: Channel) -> String {

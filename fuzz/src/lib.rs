@@ -6,12 +6,12 @@ use brdf_fit::read::{Format, ReadOptions, Side};
 /// Reads the bytes as a format, on the sides that it has and on others: what is read is in the
 /// model's domain, and what is not is an error.
 pub fn read(bytes: &[u8], format: Option<Format>, name: &str) {
-    for side in [None, Some(Side::Forward)] {
+    for (side, sample) in [(None, None), (Some(Side::Forward), None), (None, Some(3))] {
         let options = ReadOptions {
             format,
             phi_zero: side,
             theta_positive: side,
-            sample: side.map(|_| 3),
+            sample,
         };
         if let Ok(scan) = Measurements::from_bytes(name, bytes, &options) {
             assert!(!scan.readings().is_empty());

@@ -1,5 +1,7 @@
 //! The model and its relatives: which terms they are made of, and one of them chosen at run time.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
@@ -34,6 +36,19 @@ impl Family {
         Self::Ggx,
         Self::Beckmann,
     ];
+}
+
+/// The name that it has in files.
+impl fmt::Display for Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Paper => "paper",
+            Self::Smith => "smith",
+            Self::Power => "power",
+            Self::Ggx => "ggx",
+            Self::Beckmann => "beckmann",
+        })
+    }
 }
 
 /// All numbers that a model of any family may have, in the order (k2, kD, k1, n, p).

@@ -654,7 +654,9 @@ fn check_readings(measurements: &Measurements, model: HeldModel) -> Result<(), F
         return Err(too_few(readings.len(), model));
     }
     let value = readings[0].brdf;
-    if value != 0.0 && readings.iter().all(|reading| reading.brdf == value) {
+    // Of kD alone they say everything.
+    let undetermined = model.free() != [Parameter::Kd];
+    if undetermined && value != 0.0 && readings.iter().all(|reading| reading.brdf == value) {
         return Err(FitError::AllEqual {
             count: readings.len(),
             value,

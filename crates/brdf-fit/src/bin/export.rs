@@ -1,5 +1,6 @@
 //! The command line: writes fitted BRDFs in the forms that other programs take.
 
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -77,6 +78,7 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let beside = arguments.beside()?;
     let outputs = output.into_iter().chain(beside.as_deref());
     check_outputs([input], outputs).map_err(|error| error.to_string())?;
+    arguments.check()?;
     let coating = arguments.coating()?;
     let options = ExportOptions {
         name: arguments.name.clone(),
@@ -89,6 +91,10 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let found = found.map_err(|error| error.to_string())?;
     export_beside(arguments.to, &options, &mut bytes_beside).map_err(|error| error.to_string())?;
     let Some(path) = output else {
+        if let Some(error) = &error {
+            // Where standard error is gone, nobody is there to be told.
+            let _ = writeln!(io::stderr(), "{error}");
+        }
         return print(&bytes);
     };
     if let Some(beside) = &beside {
@@ -123,6 +129,24 @@ fn three(text: &str) -> Result<[f64; 3], String> {
 }
 
 impl Arguments {
+    /// No option is given that the form has no use for.
+    fn check(&self) -> Result<(), String> {
+        let defaults = ExportOptions::default();
+        let is_source = matches!(self.to, Target::Source(_) | Target::Mitsuba);
+        let of_colours = matches!(self.to, Target::Merl | Target::Mitsuba);
+        let is_table = matches!(self.to, Target::Merl | Target::Astm | Target::Zemax);
+        let idle = [
+            ("name", self.name != defaults.name && !is_source),
+            ("rgb", self.rgb.is_some() && !of_colours),
+            ("tolerance", self.tolerance.is_some() && !is_table),
+            ("grid", self.grid != defaults.grid && self.to != Target::Csv),
+        ];
+        match idle.iter().find(|(_, idle)| *idle) {
+            Some((option, _)) => Err(format!("--{option} says nothing about this form")),
+            None => Ok(()),
+        }
+    }
+
     /// The second file, of a form that has one: beside the first, which then has to be named.
     fn beside(&self) -> Result<Option<PathBuf>, String> {
         let Some(extension) = self.to.beside() else {

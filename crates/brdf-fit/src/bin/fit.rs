@@ -2,7 +2,7 @@
 
 use std::io;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use brdf_fit::energy::USUAL_LIMIT_DEG;
@@ -39,8 +39,8 @@ struct Arguments {
     files: Vec<PathBuf>,
 
     /// Fit with the options of the fits in this file, which an earlier run wrote with --json: those
-    /// of the same wavelength within 1 %, of several those of the same file. The sides on which a
-    /// file counts theta and phi are said anew
+    /// of the same wavelength within 1 %, of several those of the same file; it is read as it was,
+    /// but for --sample, which is said anew
     #[arg(long, value_name = "FILE", conflicts_with_all = OF_A_FIT)]
     again: Option<PathBuf>,
 
@@ -140,12 +140,14 @@ struct Arguments {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 
-    /// Write theory and experiment side by side for each incidence to this file, as CSV
+    /// Write theory and experiment side by side for each incidence to this file, as CSV; of a MERL
+    /// table that is every bin
     #[arg(long, value_name = "FILE")]
     curves: Option<PathBuf>,
 
     /// Draw every fit into this folder, as SVG and PNG, with a page report.html that holds the
-    /// pictures and the tables
+    /// pictures and the tables; of a MERL table those readings that a goniometer would take in the
+    /// plane of incidence
     #[arg(long, value_name = "FOLDER")]
     plot: Option<PathBuf>,
 
@@ -297,18 +299,23 @@ impl Arguments {
         self.again.as_ref().map(Document::read).transpose()
     }
 
-    /// How the files are read: as the options say, else on the sides that those of the document
-    /// were told to be on.
-    fn read_options(&self, document: Option<&Document>) -> ReadOptions {
-        let told = document.map(|document| &document.reports[0]);
-        let told = told.filter(|report| matches!(report.format, Format::Csv | Format::Goniometer));
-        let before = told
-            .map(|report| report.convention)
-            .filter(|convention| *convention != Convention::default());
+    /// How a file is read: as the options say, else as the document says of it, and where that
+    /// says nothing of the file, on the sides that its first file was told to be on.
+    fn read_options(&self, file: &Path, document: Option<&Document>) -> ReadOptions {
+        let known = document.and_then(|document| document.report_on(file));
+        let told = document
+            .map(|document| &document.reports[0])
+            .filter(|first| {
+                matches!(first.format, Format::Csv | Format::Goniometer)
+                    && first.convention != Convention::default()
+            });
+        let sides = known.or(told).map(|report| report.convention);
         ReadOptions {
-            format: self.format,
-            theta_positive: self.theta_positive.or(before.map(|b| b.theta_positive)),
-            phi_zero: self.phi_zero.or(before.map(|b| b.phi_zero)),
+            format: self.format.or(known.map(|report| report.format)),
+            theta_positive: self
+                .theta_positive
+                .or(sides.map(|sides| sides.theta_positive)),
+            phi_zero: self.phi_zero.or(sides.map(|sides| sides.phi_zero)),
             sample: self.sample.and_then(|count| usize::try_from(count).ok()),
         }
     }
@@ -345,7 +352,7 @@ fn main() -> ExitCode {
             return Outcome::BadUsageOrFile.into();
         }
     };
-    let (scans, read) = read_all(&arguments, &arguments.read_options(document.as_ref()));
+    let (scans, read) = read_all(&arguments, document.as_ref());
     let (jobs, planned) = plan(&scans, &arguments, document.as_ref());
     let mut outcome = read.max(planned);
     let fits = fit_all(&jobs, &arguments);
@@ -391,11 +398,11 @@ fn told(report: &Report, error: &FitError, arguments: &Arguments) -> Outcome {
 }
 
 /// Reads every file, and complains about those that cannot be read.
-fn read_all(arguments: &Arguments, options: &ReadOptions) -> (Vec<Scan>, Outcome) {
+fn read_all(arguments: &Arguments, document: Option<&Document>) -> (Vec<Scan>, Outcome) {
     let files: Vec<Result<Vec<Scan>, ReadError>> = arguments
         .files
         .par_iter()
-        .map(|file| Scan::of_file(file, options))
+        .map(|file| Scan::of_file(file, &arguments.read_options(file, document)))
         .collect();
     let mut outcome = Outcome::AllFitted;
     let mut scans = Vec::new();

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use brdf_core::Geometry;
 
 use super::coating::{Coating, Fitted};
+use super::domain::parameters;
 use super::target::ExportError;
 
 /// More points are no table that anyone wants to read.
@@ -133,13 +134,8 @@ fn write_header(coating: &Coating, writer: &mut dyn Write) -> io::Result<()> {
         let wavelength = fit
             .wavelength_um
             .map_or_else(String::new, |um| format!(" at {um} um"));
-        let (family, at) = (fit.brdf.family(), fit.brdf.model_parameters());
         writeln!(writer, "# computed from the fit of {file}{wavelength}")?;
-        writeln!(
-            writer,
-            "# {family:?} k2 {} kd {} k1 {} n {} p {}",
-            at.k2, at.kd, at.k1, at.n, at.p
-        )?;
+        writeln!(writer, "# {}", parameters(fit))?;
     }
     writeln!(writer, "# quantity: brdf")?;
     let wavelength = coating.fits.iter().any(|fit| fit.wavelength_um.is_some());

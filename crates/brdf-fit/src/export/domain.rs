@@ -40,6 +40,20 @@ pub(super) fn rounded_deg(angle: f64) -> f64 {
     (angle * 1e4).round() / 1e4
 }
 
+/// The parameters of a fit, in words.
+pub(super) fn parameters(fit: &Fitted) -> String {
+    let at = fit.brdf.model_parameters();
+    format!(
+        "family {}: k2 {}, kD {}, k1 {}, n {}, p {}",
+        fit.brdf.family(),
+        at.k2,
+        at.kd,
+        at.k1,
+        at.n,
+        at.p
+    )
+}
+
 /// What the table is of, and how exact it is.
 pub(super) fn write_comments(
     fits: &[Fitted],
@@ -54,17 +68,7 @@ pub(super) fn write_comments(
             .map_or_else(String::new, |um| format!(" at {um} um"));
         let e = fit.e_percent;
         writeln!(writer, "# fit of {file}{wavelength}, E = {e} %")?;
-        let at = fit.brdf.model_parameters();
-        writeln!(
-            writer,
-            "# {:?} k2 {} kd {} k1 {} n {} p {}",
-            fit.brdf.family(),
-            at.k2,
-            at.kd,
-            at.k1,
-            at.n,
-            at.p
-        )?;
+        writeln!(writer, "# {}", parameters(fit))?;
     }
     writeln!(writer, "# refractive_index: {}", refractive_index(fits))?;
     writeln!(

@@ -66,7 +66,7 @@ impl FromStr for Target {
 }
 
 /// The tolerance of interpolated tables where none is given.
-pub const USUAL_TOLERANCE: f64 = 3e-2;
+pub const USUAL_TOLERANCE: f64 = 5e-2;
 
 /// What a form may be told.
 #[derive(Debug, Clone, PartialEq)]
@@ -103,14 +103,14 @@ pub enum ExportError {
     Coating(#[from] CoatingError),
     /// No table of a size that is of use keeps to the tolerance.
     #[error(
-        "a table within {tolerance:e} has more than {MOST_ENTRIES} entries: expected --tolerance \
-         {reachable:.1e} or more"
+        "a table within {tolerance:e} has more than {MOST_ENTRIES} entries: expected {}",
+        expected(*.reachable)
     )]
     Tolerance {
         /// The tolerance that was asked for.
         tolerance: f64,
-        /// One that can be kept to.
-        reachable: f64,
+        /// One that can be kept to; `None` where the lobe is too narrow for any.
+        reachable: Option<f64>,
     },
     /// The bins of a MERL table are too wide for the tolerance.
     #[error(
@@ -138,8 +138,15 @@ impl ExportError {
     pub(super) fn tolerance(tolerance: f64, unreachable: &Unreachable) -> Self {
         Self::Tolerance {
             tolerance,
-            reachable: unreachable.reachable,
+            reachable: Some(unreachable.reachable).filter(|reachable| *reachable < 1.0),
         }
+    }
+}
+
+fn expected(reachable: Option<f64>) -> String {
+    match reachable {
+        Some(tolerance) => format!("--tolerance {tolerance:.1e} or more"),
+        None => "source code, as no table keeps to any tolerance".to_owned(),
     }
 }
 

@@ -100,9 +100,7 @@ impl ReadOptions {
             phi_zero: self.phi_zero.unwrap_or(of_format.phi_zero),
         }
     }
-}
 
-impl ReadOptions {
     /// The convention of a file whose format leaves no choice.
     ///
     /// Errors: an option says that it is another, and `why` it cannot be.

@@ -123,9 +123,20 @@ impl Document {
         Ok(document)
     }
 
-    /// The options by which a scan of one wavelength, in micrometres, of a file was fitted: those of the fit whose wavelength
-    /// is within 1 % of its own, or which states none either. Of several it is the one of the same
-    /// file, next by the file's name, next by the nearest wavelength, and else the first.
+    /// A report on a file: by its path, next by its name.
+    pub fn report_on(&self, source: &Path) -> Option<&Report> {
+        let reports = || self.reports.iter();
+        let same_name =
+            |report: &&Report| Path::new(&report.file).file_name() == source.file_name();
+        reports()
+            .find(|report| Path::new(&report.file) == source)
+            .or_else(|| reports().find(same_name))
+    }
+
+    /// The options by which a scan of one wavelength, in micrometres, of a file was fitted: those of
+    /// the fit whose wavelength is within 1 % of its own, or which states none either. Of several it
+    /// is the one of the same file, next by the file's name, next by the nearest wavelength, and else
+    /// the first.
     pub fn options_for(&self, source: &str, wavelength_um: Option<f64>) -> Option<&FitOptions> {
         let source = Path::new(source);
         let key = |report: &Report| {

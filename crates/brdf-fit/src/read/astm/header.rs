@@ -147,19 +147,24 @@ impl Header {
     /// Where no column is known to be the value, the only one that is not known is.
     fn take_only_value(&mut self, text: &Text<'_>) -> Result<(), ReadError> {
         let unused = |column: &Column| *column == Column::Unused;
-        let values = self
+        let is_value = |column: &Column| matches!(column, Column::Value(_));
+        if !self.columns.iter().any(is_value) {
+            let mut places = (0..self.columns.len()).filter(|&i| unused(&self.columns[i]));
+            if let (Some(only), None) = (places.next(), places.next()) {
+                self.columns[only] = Column::Value(None);
+            }
+        }
+        let value = self
             .columns
             .iter()
-            .filter(|c| matches!(c, Column::Value(_)));
-        if values.count() > 0 {
+            .position(|column| *column == Column::Value(None));
+        // The plain names are also those of columns whose quantity the header has told.
+        let Some(name) = value.map(|place| &self.names[place]) else {
             return Ok(());
-        }
-        let mut places = (0..self.columns.len()).filter(|&i| unused(&self.columns[i]));
-        if let (Some(only), None) = (places.next(), places.next()) {
-            self.columns[only] = Column::Value(None);
-            if let Some(quantity) = quantity_of(text, self.number, &self.names[only])? {
-                self.quantity = quantity;
-            }
+        };
+        let told = quantity_of(text, self.number, name)?;
+        if let Some(quantity) = told.filter(|quantity| *quantity != Quantity::Brdf) {
+            self.quantity = quantity;
         }
         Ok(())
     }
@@ -259,7 +264,7 @@ impl Column {
             .strip_suffix("nm")
             .and_then(|number| micrometres(number.as_bytes()));
         match lower.as_str() {
-            "brdf" | "bsdf" => Self::Value(None),
+            "brdf" | "bsdf" | "brdf_cos" | "dsf" | "ars" | "brf" => Self::Value(None),
             "sigma" => Self::Sigma,
             _ if wavelength_um.is_some() => Self::Value(wavelength_um),
             _ => Self::Unused,

@@ -238,3 +238,20 @@ fn a_tolerance_is_above_0_and_below_1() {
         );
     }
 }
+
+#[test]
+fn an_option_that_says_nothing_about_a_form_is_an_error() {
+    let fits = Fits::of(&[in_workspace("data/synthetic").join(SCANS[0])]);
+    for (form, option, value) in [
+        ("c", "grid", "psi=10"),
+        ("csv", "tolerance", "0.1"),
+        ("astm", "rgb", "0.6,0.5,0.4"),
+        ("json", "name", "paint"),
+    ] {
+        let said = refused(&fits.json(), &["--to", form, &format!("--{option}"), value]);
+        assert_eq!(
+            said,
+            format!("error: --{option} says nothing about this form\n")
+        );
+    }
+}

@@ -151,6 +151,28 @@ fn a_fit_is_done_again_with_the_sides_of_its_file() {
     }
 }
 
+#[test]
+fn of_several_files_each_is_done_again_with_its_own_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fit.json");
+    let forward = folder.path().join("forward.csv");
+    let mut scan = "psi_deg,theta_deg,phi_deg,brdf_per_sr\n".to_owned();
+    for (psi, theta, brdf) in [(20, 20, 0.9), (20, 50, 0.2), (50, 50, 1.0), (50, 20, 0.2)] {
+        scan += &format!("{psi},{theta},0,{brdf}\n{psi},{theta},180,0.1\n");
+    }
+    std::fs::write(&forward, scan).unwrap();
+    let beam = file("beam.astm");
+    let both = [beam.as_os_str(), forward.as_os_str()];
+    let options = ["--phi-zero", "forward", "--n", "1.5", "--json"].map(OsStr::new);
+    let output = run_fit(both.into_iter().chain(options).chain([json.as_os_str()]));
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let parameters = |document: Document| document.reports[0].fit.as_ref().unwrap().parameters;
+    let first = Document::read(&json).unwrap();
+    let expected = first.reports[1].fit.as_ref().unwrap().parameters;
+    let (_, again) = fitted(&forward, &["--again", json.to_str().unwrap()]);
+    assert_eq!(parameters(again), expected);
+}
+
 fn assert_refused(name: &str, content: &str, options: &[&str], message: &str) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);

@@ -47,7 +47,7 @@ struct Arguments {
     name: String,
 
     /// The largest relative error of a table, interpolated between its entries, of merl in the
-    /// nearest bin [default: 3e-2; merl: any]
+    /// nearest bin [default: 5e-2; merl: any]
     #[arg(long, value_name = "ERROR", value_parser = tolerance)]
     tolerance: Option<f64>,
 
@@ -91,9 +91,9 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let found = found.map_err(|error| error.to_string())?;
     export_beside(arguments.to, &options, &mut bytes_beside).map_err(|error| error.to_string())?;
     let Some(path) = output else {
-        if let Some(error) = &error {
+        if let Some(found) = &found {
             // Where standard error is gone, nobody is there to be told.
-            let _ = writeln!(io::stderr(), "{error}");
+            let _ = writeln!(io::stderr(), "{found}");
         }
         return print(&bytes);
     };

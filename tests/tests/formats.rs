@@ -156,10 +156,10 @@ fn of_several_files_each_is_done_again_with_its_own_sides() {
     let folder = tempfile::tempdir().unwrap();
     let json = folder.path().join("fit.json");
     let forward = folder.path().join("forward.csv");
-    let mut scan = "psi_deg,theta_deg,phi_deg,brdf_per_sr\n".to_owned();
-    for (psi, theta, brdf) in [(20, 20, 0.9), (20, 50, 0.2), (50, 50, 1.0), (50, 20, 0.2)] {
-        scan += &format!("{psi},{theta},0,{brdf}\n{psi},{theta},180,0.1\n");
-    }
+    let rows = [(20, 20, 0.9), (20, 50, 0.2), (50, 50, 1.0), (50, 20, 0.2)];
+    let rows =
+        rows.map(|(psi, theta, brdf)| format!("{psi},{theta},0,{brdf}\n{psi},{theta},180,0.1\n"));
+    let scan = "psi_deg,theta_deg,phi_deg,brdf_per_sr\n".to_owned() + &rows.concat();
     std::fs::write(&forward, scan).unwrap();
     let beam = file("beam.astm");
     let both = [beam.as_os_str(), forward.as_os_str()];

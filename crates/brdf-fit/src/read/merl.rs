@@ -177,22 +177,27 @@ impl Bins {
     /// The direction pair in the middle of a bin as psi, theta and phi in radians; `None` where one
     /// of them is not above the surface.
     pub fn middle(self, [i, j, k]: [usize; 3]) -> Option<[f64; 3]> {
-        let part = |index: usize, bins: usize| (index as f64 + 0.5) / bins as f64;
         Self::directions([
-            part(i, self.theta_h),
-            part(j, self.theta_d),
-            part(k, self.phi_d),
+            middle_of(i, self.theta_h),
+            middle_of(j, self.theta_d),
+            middle_of(k, self.phi_d),
         ])
     }
 
     /// The same at a place of the table, from 0 to 1 along each of its axes.
+    pub(crate) fn directions([root_h, part_d, part_phi]: [f64; 3]) -> Option<[f64; 3]> {
+        Self::pair(half(root_h), difference(part_d), azimuth(part_phi))
+    }
+
+    /// The same by sine and cosine of `theta_h`, `theta_d` and `phi_d`.
     ///
     /// With h = (sin `theta_h`, 0, cos `theta_h`), the source is the direction (`theta_d`, `phi_d`)
     /// turned from the normal to h, and the view its mirror image about h.
-    pub(crate) fn directions([root_h, part_d, part_phi]: [f64; 3]) -> Option<[f64; 3]> {
-        let (sin_h, cos_h) = (FRAC_PI_2 * root_h * root_h).sin_cos();
-        let (sin_d, cos_d) = (FRAC_PI_2 * part_d).sin_cos();
-        let (sin_phi, cos_phi) = (PI * part_phi).sin_cos();
+    fn pair(
+        (sin_h, cos_h): (f64, f64),
+        (sin_d, cos_d): (f64, f64),
+        (sin_phi, cos_phi): (f64, f64),
+    ) -> Option<[f64; 3]> {
         let along = sin_d * cos_phi;
         let source = [
             along * cos_h + cos_d * sin_h,
@@ -205,7 +210,7 @@ impl Bins {
             2.0 * cos_d * cos_h - source[2],
         ];
         (source[2] > 0.0 && view[2] > 0.0).then(|| {
-            let zenith = |[x, y, z]: [f64; 3]| x.hypot(y).atan2(z);
+            let zenith = |[x, y, z]: [f64; 3]| (x * x + y * y).sqrt().atan2(z);
             let cross = source[0] * view[1] - source[1] * view[0];
             let dot = source[0] * view[0] + source[1] * view[1];
             [zenith(source), zenith(view), cross.atan2(dot)]
@@ -251,6 +256,26 @@ pub(super) fn read(
         };
     }
     Ok(together)
+}
+
+/// The middle of a bin, from 0 to 1 along its axis.
+fn middle_of(index: usize, bins: usize) -> f64 {
+    (index as f64 + 0.5) / bins as f64
+}
+
+/// Sine and cosine of `theta_h` at a place along its axis.
+fn half(root: f64) -> (f64, f64) {
+    (FRAC_PI_2 * root * root).sin_cos()
+}
+
+/// Sine and cosine of `theta_d` at a place along its axis.
+fn difference(part: f64) -> (f64, f64) {
+    (FRAC_PI_2 * part).sin_cos()
+}
+
+/// Sine and cosine of `phi_d` at a place along its axis.
+fn azimuth(part: f64) -> (f64, f64) {
+    (PI * part).sin_cos()
 }
 
 /// The bin of a position from 0 to 1.
@@ -474,13 +499,18 @@ impl Slab {
     /// The slab of index i from the bytes of its values.
     fn of(bins: Bins, channel: Channel, i: usize, values: &[u8]) -> Result<Self, String> {
         let mut slab = Self::default();
+        let half = half(middle_of(i, bins.theta_h));
+        let azimuths = (0..bins.phi_d).map(|k| azimuth(middle_of(k, bins.phi_d)));
+        let azimuths: Vec<(f64, f64)> = azimuths.collect();
+        let differences = (0..bins.theta_d).map(|j| difference(middle_of(j, bins.theta_d)));
+        let differences: Vec<(f64, f64)> = differences.collect();
         for (bin, value) in values.as_chunks::<VALUE>().0.iter().enumerate() {
             let (j, k) = (bin / bins.phi_d, bin % bins.phi_d);
             let value = f64::from_le_bytes(*value);
             if !value.is_finite() {
                 return Err(not_finite(channel, [i, j, k], value));
             }
-            match bins.middle([i, j, k]) {
+            match Bins::pair(half, differences[j], azimuths[k]) {
                 Some(_) if value < 0.0 => slab.not_measured += 1,
                 None if value >= 0.0 => slab.below += 1,
                 None => {}

@@ -105,10 +105,6 @@ impl Dialect for C<'_> {
         format!("{digits}f")
     }
 
-    fn component(&self, vector: &str, axis: usize) -> String {
-        format!("{vector}[{axis}]")
-    }
-
     fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {
         let function = match function {
             "abs" => "fabs",

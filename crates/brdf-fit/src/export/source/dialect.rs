@@ -18,10 +18,14 @@ pub(super) trait Dialect {
     fn named(&self, name: &str) -> String;
 
     /// A number that `f32` has too, given with a point.
-    fn number(&self, digits: &str) -> String;
+    fn number(&self, digits: &str) -> String {
+        digits.to_owned()
+    }
 
     /// A component of a vector.
-    fn component(&self, vector: &str, axis: usize) -> String;
+    fn component(&self, vector: &str, axis: usize) -> String {
+        format!("{vector}[{axis}]")
+    }
 
     /// A call of a function that the language has; nothing if it is one of the formulas.
     fn library_call(&self, function: &str, arguments: &[String]) -> Option<String>;

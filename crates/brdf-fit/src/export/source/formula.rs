@@ -85,6 +85,8 @@ fn functions(text: &'static str) -> impl Iterator<Item = Function> {
     text.split("\n\n").map(function)
 }
 
+/// A function of a text of this program. What is wrong with one is no user's fault, and stops every
+/// test of its family.
 fn function(text: &'static str) -> Function {
     let (comment, code): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with('#'));
     let head = code.first().copied().unwrap_or_default();
@@ -110,6 +112,7 @@ fn parameter(text: &'static str) -> Parameter {
     }
 }
 
+/// A line of a function, of which the same is true.
 fn statement(line: &'static str) -> Statement {
     if line.starts_with('#') {
         return Statement::Comment(without_mark(line));

@@ -65,10 +65,6 @@ impl Dialect for Glsl<'_> {
         format!("{}_{}", self.name, of_shaders(name))
     }
 
-    fn number(&self, digits: &str) -> String {
-        digits.to_owned()
-    }
-
     fn component(&self, vector: &str, axis: usize) -> String {
         format!("{vector}.{}", AXES[axis])
     }

@@ -86,14 +86,6 @@ impl Dialect for Osl<'_> {
         format!("{}_{}", self.name, of_shaders(name))
     }
 
-    fn number(&self, digits: &str) -> String {
-        digits.to_owned()
-    }
-
-    fn component(&self, vector: &str, axis: usize) -> String {
-        format!("{vector}[{axis}]")
-    }
-
     fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {
         same_call(function, arguments).or_else(|| with_operators(function, arguments))
     }

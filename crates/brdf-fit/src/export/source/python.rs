@@ -15,11 +15,7 @@ enum Module {
 
 /// A file of functions over arrays of NumPy.
 pub(super) fn numpy(source: &Source) -> String {
-    let dialect = Python {
-        name: source.name,
-        module: Module::NumPy,
-    };
-    source.file(&dialect, &NUMPY)
+    Python::of(source, Module::NumPy, &NUMPY)
 }
 
 /// Functions over numbers and arrays of Dr.Jit, below the words about them, their names beginning
@@ -35,11 +31,7 @@ pub(super) fn numpy(source: &Source) -> String {
 /// NAME_weight(source, view)           f_r cos theta / density
 /// ```
 pub(in crate::export) fn drjit(source: &Source) -> String {
-    let dialect = Python {
-        name: source.name,
-        module: Module::DrJit,
-    };
-    source.file(&dialect, &DR_JIT)
+    Python::of(source, Module::DrJit, &DR_JIT)
 }
 
 const NUMPY: Parts = Parts {
@@ -140,6 +132,12 @@ struct Python<'a> {
 }
 
 impl Python<'_> {
+    /// A file.
+    fn of(source: &Source, module: Module, parts: &Parts) -> String {
+        let name = source.name;
+        source.file(&Python { name, module }, parts)
+    }
+
     fn module(&self) -> &'static str {
         match self.module {
             Module::NumPy => "np",
@@ -155,14 +153,6 @@ impl Dialect for Python<'_> {
 
     fn named(&self, name: &str) -> String {
         format!("{}_{name}", self.name)
-    }
-
-    fn number(&self, digits: &str) -> String {
-        digits.to_owned()
-    }
-
-    fn component(&self, vector: &str, axis: usize) -> String {
-        format!("{vector}[{axis}]")
     }
 
     fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {

@@ -1,7 +1,8 @@
 //! What all fuzz targets do: read the bytes as a format and look at what came out.
 
 use brdf_fit::Measurements;
-use brdf_fit::read::{Format, ReadOptions, Side};
+use brdf_fit::read::ReadOptions;
+use brdf_fit::scan::{Format, Side};
 
 /// Reads the bytes as a format, on the sides that it has and on others: what is read is in the
 /// model's domain, and what is not is an error.

@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use brdf_fit::assessment::{Assessment, Rung};
+use brdf_fit::inference::assessment::{Assessment, Candidate};
+use brdf_fit::inference::uncertainty::{Estimate, Knowledge};
 use brdf_fit::report::{Depth, Report};
-use brdf_fit::uncertainty::{Estimate, Knowledge};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
 use rayon::prelude::*;
 
@@ -83,7 +83,7 @@ fn table(scan: &Measurements) -> String {
     text
 }
 
-fn row(rung: &Rung) -> String {
+fn row(rung: &Candidate) -> String {
     let predicted = rung
         .predicted_e_percent
         .map_or_else(|| "-".to_owned(), percent);
@@ -118,7 +118,7 @@ fn remarks(assessment: &Assessment) -> String {
     if let Some(verdict) = &assessment.verdict {
         let _ = writeln!(text, "- Verdict: {verdict}.");
     }
-    let by = |e: fn(&Rung) -> Option<f64>| {
+    let by = |e: fn(&Candidate) -> Option<f64>| {
         let rungs = assessment
             .models
             .iter()

@@ -206,10 +206,10 @@ fn usage_that_is_none() {
         ),
         (vec!["--hold", "k3=1"], "\"k3\" is no parameter"),
         (vec!["--hold", "k1"], "expected NAME=VALUE"),
-        (vec!["--hold", "k1=2000"], "k1 = 2000 cannot be held"),
+        (vec!["--hold", "k1=2000"], "k1 = 2000 cannot be fixed"),
         (
             vec!["--hold", "p=1"],
-            "p cannot be held: model three fits k2, kD, k1",
+            "p cannot be fixed: model three fits k2, kD, k1",
         ),
         (vec!["--nonsense"], "unexpected argument"),
     ] {

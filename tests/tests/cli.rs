@@ -325,8 +325,8 @@ fn parameters_can_be_held() {
     let output = run_fit([path.as_str(), "--n", "1.5", "--hold", "K1=0.2,kd=0.02"]);
     succeeded(&output);
     let text = stdout(&output);
-    assert!(text.contains("  held: kD = 0.02, k1 = 0.2\n"), "{text}");
-    assert!(text.contains("no lower minimum at the width that is held"));
+    assert!(text.contains("  fixed: kD = 0.02, k1 = 0.2\n"), "{text}");
+    assert!(text.contains("no lower minimum at the width that is fixed"));
     let value_of = |name: &str| text.contains(&format!("\n  {name:<9}     "));
     assert!(
         value_of("k2") && !value_of("kD") && !value_of("k1"),

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use brdf_fit::export::Coating;
+use brdf_fit::export::Material;
 use brdf_fit::report::Document;
 use brdf_tests::{export_command, in_workspace, run_fit};
 use tempfile::TempDir;
@@ -98,7 +98,7 @@ fn the_json_of_a_model_is_read_again_as_the_fits_that_it_was_made_of() {
         let of_fits = exported(&fits.json(), &["--to", to, "--file", SCANS[0]]);
         assert_eq!(exported(&path, &["--to", to]), of_fits);
     }
-    let coating = Coating::read(&path).unwrap();
+    let coating = Material::read(&path).unwrap();
     let document = Document::read(fits.json()).unwrap();
     let parameters = document.reports[0].fit.as_ref().unwrap().parameters;
     let at = coating.only().unwrap().brdf.model_parameters();

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Sampler};
-use brdf_fit::export::{Coating, Fitted};
+use brdf_fit::export::{Fitted, Material};
 use brdf_tests::{export_command, generator, in_workspace, python, run_fit, run_python};
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -45,7 +45,7 @@ impl Plugins {
         plugin
     }
 
-    fn try_export(&self, coating: &Coating, options: &[&str], plugin: &Path) -> Output {
+    fn try_export(&self, coating: &Material, options: &[&str], plugin: &Path) -> Output {
         let fits = self.path("fits.json");
         let mut bytes = Vec::new();
         coating.write(&mut bytes).unwrap();
@@ -56,7 +56,7 @@ impl Plugins {
     }
 }
 
-fn coating(brdfs: &[AnyBrdf]) -> Coating {
+fn coating(brdfs: &[AnyBrdf]) -> Material {
     let fits = brdfs.iter().zip(WAVELENGTHS_UM).map(|(brdf, um)| Fitted {
         file: "made-up.csv".to_owned(),
         wavelength_um: Some(um),
@@ -64,7 +64,7 @@ fn coating(brdfs: &[AnyBrdf]) -> Coating {
         e_percent: 1.0,
         psi_max_deg: 70.0,
     });
-    Coating {
+    Material {
         fits: fits.collect(),
     }
 }
@@ -496,7 +496,7 @@ fn what_cannot_be_written_is_not_written_in_part() {
 fn bad_usage_is_said() {
     let plugins = Plugins::new();
     let plugin = plugins.path("coating.py");
-    let refused = |coating: &Coating, options: &[&str], plugin: &Path| {
+    let refused = |coating: &Material, options: &[&str], plugin: &Path| {
         let output = plugins.try_export(coating, options, plugin);
         assert_eq!(output.status.code(), Some(2));
         assert!(!plugin.exists());
@@ -509,7 +509,7 @@ fn bad_usage_is_said() {
     assert!(said.contains("expected three numbers"), "{said}");
     let said = refused(&colourful, &["--rgb", "0.62,0.55,0.7"], &plugin);
     assert!(said.contains("no fit of 0.7 um: expected one of"), "{said}");
-    let two = Coating {
+    let two = Material {
         fits: colourful.fits[..2].to_vec(),
     };
     let said = refused(&two, &[], &plugin);

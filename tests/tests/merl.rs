@@ -10,7 +10,7 @@ use std::process::Output;
 use std::sync::OnceLock;
 
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters};
-use brdf_fit::export::{Coating, Fitted};
+use brdf_fit::export::{Fitted, Material};
 use brdf_fit::read::merl::{Bins, Channel};
 use brdf_tests::{export_command, generator, run_fit, run_python, trade_command};
 use rand::RngExt as _;
@@ -63,7 +63,7 @@ fn model(path: &Path, fits: &[(f64, [f64; 3])]) -> PathBuf {
         psi_max_deg: 70.0,
     });
     let mut bytes = Vec::new();
-    let coating = Coating {
+    let coating = Material {
         fits: fits.collect(),
     };
     coating.write(&mut bytes).unwrap();

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Output;
 
-use brdf_fit::trade::pareto::pareto;
+use brdf_fit::tradeoff::pareto::pareto;
 use brdf_tests::{in_workspace, run_fit, trade_command};
 use serde_json::Value;
 

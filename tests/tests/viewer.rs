@@ -4,8 +4,8 @@
 use std::process::Output;
 
 use brdf_core::ModelParameters;
+use brdf_fit::fit::Fit;
 use brdf_fit::report::{Document, Report};
-use brdf_fit::stages::Fit;
 use brdf_tests::{fit_command, in_workspace, viewer_command};
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Native;

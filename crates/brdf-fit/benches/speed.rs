@@ -8,7 +8,7 @@ use std::path::Path;
 
 use brdf_core::published::PUBLISHED;
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Parameters, ThreeParameterBrdf};
-use brdf_fit::export::{Coating, ExportOptions, Fitted, Target, export};
+use brdf_fit::export::{ExportOptions, Fitted, Material, Target, export};
 use brdf_fit::read::merl::{Channel, Table};
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex, fit};
@@ -262,7 +262,7 @@ fn merl_table() -> Vec<u8> {
         psi_max_deg: 90.0,
     };
     let mut bytes = Vec::new();
-    let coating = Coating { fits: vec![fitted] };
+    let coating = Material { fits: vec![fitted] };
     export(
         &coating,
         Target::Merl,

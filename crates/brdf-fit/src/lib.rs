@@ -20,7 +20,7 @@
 //! ```text
 //! file -> read -> Measurements -> initial -> stages -> Fit -> uncertainty, assessment -> report, plot
 //!                                     |         |               |
-//!                                 criterion, profile, solver    prediction, ladder of models
+//!                                 objective, profile, solver    prediction, ladder of models
 //! ```
 //!
 //! Every step on the way can be watched, and ended: see [`watch`].
@@ -28,33 +28,21 @@
 //! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
 //! on screens only, with `_deg` in the name.
 
-pub mod assessment;
-pub mod criterion;
-pub mod energy;
 pub mod export;
-pub mod initial;
-pub mod measurement;
+pub mod fit;
+pub mod format;
+pub mod inference;
 pub mod model;
+pub mod objective;
 pub mod output;
 pub mod plot;
-pub mod prediction;
-pub mod profile;
+pub mod progress;
 pub mod read;
-pub mod refractive_index;
 pub mod report;
-pub mod robust;
+pub mod scan;
 pub mod solver;
-pub mod stages;
-mod stratified;
-pub mod synthetic;
-pub mod trade;
-pub mod uncertainty;
-pub mod warning;
-pub mod watch;
-pub mod weights;
-pub mod words;
+pub mod tradeoff;
 
-pub use measurement::{Measurement, Measurements};
-pub use refractive_index::RefractiveIndex;
+pub use fit::{Fit, FitError, FitOptions, fit};
+pub use scan::{Measurement, Measurements, RefractiveIndex};
 pub use solver::Method;
-pub use stages::{Fit, FitError, FitOptions, fit};

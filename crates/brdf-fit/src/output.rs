@@ -93,7 +93,7 @@ pub fn print(bytes: &[u8]) -> io::Result<()> {
 }
 
 /// An error line on standard error; where that is gone, nobody is there to be told.
-pub fn complain(message: &str) {
+pub fn print_error(message: &str) {
     let name = if io::stderr().is_terminal() {
         "\x1b[1;31merror:\x1b[0m"
     } else {

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use brdf_fit::Measurements;
-use brdf_fit::read::{Format, ReadOptions, Side};
+use brdf_fit::read::ReadOptions;
+use brdf_fit::scan::{Format, Side};
 use proptest::prelude::*;
 
 /// Reads as every format, and as what the content seems to be.

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::LazyLock;
 
-use brdf_fit::trade::fitting::{
+use brdf_fit::tradeoff::fitting::{
     Alternative, FIT_TRADE_COLUMNS, FitTrade, Measured, Outcome, trade_fits, write_fit_trades,
 };
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use brdf_fit::read::Format;
+use brdf_fit::scan::Format;
 
 use crate::intent::Export;
 use crate::job::Event;

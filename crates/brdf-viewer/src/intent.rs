@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use brdf_fit::model::{Model, Parameter};
 use brdf_fit::plot::View;
-use brdf_fit::read::Convention;
+use brdf_fit::scan::Convention;
 
 use crate::state::fitting::{FitChoice, Scope, Stages};
 use crate::state::interface::ResultTab;

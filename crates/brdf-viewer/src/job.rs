@@ -6,9 +6,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use brdf_fit::plot::View;
-use brdf_fit::read::Convention;
+use brdf_fit::progress::Step;
 use brdf_fit::report::{Depth, Report};
-use brdf_fit::watch::Step;
+use brdf_fit::scan::Convention;
 use brdf_fit::{FitOptions, Measurements};
 
 use crate::intent::{Export, Picture};

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use brdf_fit::model::Model;
 use brdf_fit::output::resolved;
-use brdf_fit::read::{Convention, Side};
+use brdf_fit::scan::{Convention, Side};
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Native;
 use brdf_viewer::intent::{Command, Intent};

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use brdf_fit::Measurements;
-use brdf_fit::read::{Convention, ReadError, ReadOptions, Scan as FileScan, Side};
+use brdf_fit::read::{ReadError, ReadOptions, Scan as FileScan};
 use brdf_fit::report::{Document, Report};
+use brdf_fit::scan::{Convention, Side};
 
 use crate::job::Opened;
 use crate::state::built_in;

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
+use brdf_fit::progress::{Observer, Step};
 use brdf_fit::report::{Depth, ModelChoice, Report};
-use brdf_fit::watch::{Step, Watch};
 
 use crate::job::{Event, FitJob, Job, Stop};
 use crate::state::sample::ScanId;
@@ -114,7 +114,7 @@ impl Follow<'_> {
     }
 }
 
-impl Watch for Follow<'_> {
+impl Observer for Follow<'_> {
     fn step(&self, step: &Step) -> ControlFlow<()> {
         self.events.send(Event::Step(self.scan, *step));
         if self.is_stopped() {
@@ -127,19 +127,19 @@ impl Watch for Follow<'_> {
 
 fn fit_all(jobs: Vec<FitJob>, depth: Depth, closing: &Stop, events: &Events) {
     for job in jobs {
-        let watch = Follow {
+        let observer = Follow {
             scan: job.scan,
             stops: [&job.stop, closing],
             events,
         };
-        if watch.is_stopped() {
+        if observer.is_stopped() {
             continue;
         }
         let result = unbroken(|| {
             let choice = ModelChoice::Given;
-            Report::of_watched(&job.measurements, &job.options, choice, depth, &watch).0
+            Report::observed(&job.measurements, &job.options, choice, depth, &observer).0
         });
-        if watch.is_stopped() {
+        if observer.is_stopped() {
             continue;
         }
         events.send(match result {

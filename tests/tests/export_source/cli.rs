@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use brdf_core::{AnyBrdf, Family, ModelParameters};
-use brdf_fit::export::{Coating, Fitted, Language};
+use brdf_fit::export::{Fitted, Language, Material};
 use brdf_tests::export_command;
 
 use crate::coatings::source;
@@ -38,7 +38,7 @@ fn coating(folder: &Path, wavelengths_um: &[f64]) -> PathBuf {
         e_percent: 1.25,
         psi_max_deg: 70.0,
     });
-    let coating = Coating {
+    let coating = Material {
         fits: fits.collect(),
     };
     let mut bytes = Vec::new();

@@ -1,7 +1,7 @@
 //! Coatings to export.
 
 use brdf_core::{AnyBrdf, Family, ModelParameters};
-use brdf_fit::export::{Coating, ExportOptions, Fitted, Language, Target, export};
+use brdf_fit::export::{ExportOptions, Fitted, Language, Material, Target, export};
 
 /// Numbers that the exported sources must get right for each family: usual ones, and those at which
 /// a form of the formulas has its limit.
@@ -31,7 +31,7 @@ pub(crate) fn source(brdf: &AnyBrdf, language: Language, name: &str) -> String {
         e_percent: 1.25,
         psi_max_deg: 70.0,
     };
-    let coating = Coating { fits: vec![fitted] };
+    let coating = Material { fits: vec![fitted] };
     let options = ExportOptions {
         name: name.to_owned(),
         ..ExportOptions::default()

@@ -4,8 +4,8 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use brdf_fit::export::{AngleGrid, Coating, ExportOptions, Target, export, export_beside};
-use brdf_fit::output::{self, check_outputs, complain, write_file};
+use brdf_fit::export::{AngleGrid, ExportOptions, Material, Target, export, export_beside};
+use brdf_fit::output::{self, check_outputs, print_error, write_file};
 use clap::Parser;
 
 /// Writes a fitted BRDF in the form that another program takes.
@@ -67,7 +67,7 @@ fn main() -> ExitCode {
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
-            complain(&message);
+            print_error(&message);
             ExitCode::from(2)
         }
     }
@@ -160,8 +160,8 @@ impl Arguments {
     }
 
     /// What is exported.
-    fn coating(&self) -> Result<Coating, String> {
-        let all = Coating::read(&self.fits).map_err(|error| error.to_string())?;
+    fn coating(&self) -> Result<Material, String> {
+        let all = Material::read(&self.fits).map_err(|error| error.to_string())?;
         let of_file = all.of_file(self.file.as_deref());
         let chosen = of_file.and_then(|coating| match self.wavelength {
             Some(wavelength) => coating.of_wavelength(wavelength),

@@ -5,17 +5,18 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use brdf_fit::energy::USUAL_LIMIT_DEG;
-use brdf_fit::model::{Held, Model};
-use brdf_fit::output::{self, TakenError, check_outputs, complain, write_file, write_json};
-use brdf_fit::read::{Convention, Format, ReadError, ReadOptions, Scan, Side};
+use brdf_fit::fit::energy::DEFAULT_LIMIT_DEG;
+use brdf_fit::fit::robust::Loss;
+use brdf_fit::model::{FixedParameters, Model};
+use brdf_fit::objective::weights::{AngleWeight, Weights};
+use brdf_fit::output::{self, TakenError, check_outputs, print_error, write_file, write_json};
+use brdf_fit::progress::{NoObserver, Observer, Step};
+use brdf_fit::read::{ReadError, ReadOptions, Scan};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
     write_models, write_parameters,
 };
-use brdf_fit::robust::Loss;
-use brdf_fit::watch::{Step, Unwatched, Watch};
-use brdf_fit::weights::{AngleWeight, Weights};
+use brdf_fit::scan::{Convention, Format, Side};
 use brdf_fit::{FitError, FitOptions, Method, RefractiveIndex};
 use clap::builder::PossibleValuesParser;
 use clap::{Parser, ValueEnum};
@@ -63,7 +64,7 @@ struct Arguments {
     /// Parameters to hold at a value instead of fitting them, as NAME=VALUE pairs such as
     /// k1=0.2,kD=0.05; only those that the model fits
     #[arg(long, value_name = "PAIRS")]
-    hold: Option<Held>,
+    hold: Option<FixedParameters>,
 
     /// Method of stage 1, or none to leave it out
     #[arg(long, value_name = "METHOD", default_value = "levenberg-marquardt", value_parser = methods_or_none())]
@@ -188,9 +189,9 @@ enum ModelArgument {
     Given(Model),
 }
 
-/// [`USUAL_LIMIT_DEG`] as clap wants it.
+/// [`DEFAULT_LIMIT_DEG`] as clap wants it.
 const USUAL_LIMIT: &str = "85";
-const _: () = assert!(USUAL_LIMIT_DEG == 85.0);
+const _: () = assert!(DEFAULT_LIMIT_DEG == 85.0);
 
 fn parse_model(text: &str) -> Result<ModelArgument, String> {
     match text {
@@ -249,7 +250,7 @@ impl Arguments {
             max_iterations: self.max_iterations,
             robust: self.robust,
             energy_limit: self.energy_conserving.map(f64::to_radians),
-            held: self.hold.unwrap_or_default(),
+            fixed: self.hold.unwrap_or_default(),
             ..FitOptions::default()
         }
     }
@@ -275,7 +276,7 @@ impl Arguments {
             return vec![options];
         }
         let of = |&model: &Model| options.of_model(model);
-        Model::COMPARED.iter().map(of).collect()
+        Model::WITH_REFERENCES.iter().map(of).collect()
     }
 
     fn choice(&self) -> ModelChoice {
@@ -342,13 +343,13 @@ impl From<Outcome> for ExitCode {
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     if let Err(error) = arguments.check_outputs() {
-        complain(&error.to_string());
+        print_error(&error.to_string());
         return Outcome::BadUsageOrFile.into();
     }
     let document = match arguments.document() {
         Ok(document) => document,
         Err(error) => {
-            complain(&error.to_string());
+            print_error(&error.to_string());
             return Outcome::BadUsageOrFile.into();
         }
     };
@@ -367,14 +368,14 @@ fn main() -> ExitCode {
                 reports.push(report);
             }
             Err(error) => {
-                complain(&error.to_string());
+                print_error(&error.to_string());
                 outcome = Outcome::BadUsageOrFile;
             }
         }
     }
     if let Err(messages) = deliver(&arguments, &scans, reports) {
         for message in messages {
-            complain(&message);
+            print_error(&message);
         }
         outcome = Outcome::BadUsageOrFile;
     }
@@ -389,7 +390,7 @@ fn told(report: &Report, error: &FitError, arguments: &Arguments) -> Outcome {
         String::new()
     };
     let scan = named(&report.file, report.wavelength_um);
-    complain(&format!("{scan}{model}: {error}"));
+    print_error(&format!("{scan}{model}: {error}"));
     if error.is_usage() {
         Outcome::BadUsageOrFile
     } else {
@@ -410,7 +411,7 @@ fn read_all(arguments: &Arguments, document: Option<&Document>) -> (Vec<Scan>, O
         match file {
             Ok(of_file) => scans.extend(of_file),
             Err(error) => {
-                complain(&error.to_string());
+                print_error(&error.to_string());
                 outcome = Outcome::BadUsageOrFile;
             }
         }
@@ -441,7 +442,7 @@ fn plan<'a>(
             jobs.extend(models.into_iter().map(|options| (scan, options)));
         } else {
             let scan = named(&source, wavelength_um);
-            complain(&format!(
+            print_error(&format!(
                 "{scan}: no fit of this wavelength in the file of --again"
             ));
             outcome = Outcome::BadUsageOrFile;
@@ -460,12 +461,12 @@ fn named(file: &str, wavelength_um: Option<f64>) -> String {
 type Made = Result<(Report, Option<FitError>), ReadError>;
 
 /// Tells the phase of a fit beside the bar.
-struct ToldPhase<'a> {
+struct PhaseMessage<'a> {
     bar: &'a ProgressBar,
     scan: String,
 }
 
-impl Watch for ToldPhase<'_> {
+impl Observer for PhaseMessage<'_> {
     fn step(&self, step: &Step) -> ControlFlow<()> {
         if step.iteration == 0 {
             self.bar
@@ -484,15 +485,15 @@ fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<Made> {
     if let Ok(style) = ProgressStyle::with_template("fitting {bar:40} {pos}/{len} {msg}") {
         bar.set_style(style);
     }
-    let make = |(scan, options): &Job<'_>, watch: &dyn Watch| {
+    let make = |(scan, options): &Job<'_>, observer: &dyn Observer| {
         let measurements = scan.measurements()?;
-        let made = Report::of_watched(&measurements, options, choice, depth, watch);
+        let made = Report::observed(&measurements, options, choice, depth, observer);
         bar.inc(1);
         Ok(made)
     };
     let of_table = |job: &Job<'_>| {
         let scan = named(&job.0.source(), job.0.wavelength_um());
-        make(job, &ToldPhase { bar: &bar, scan })
+        make(job, &PhaseMessage { bar: &bar, scan })
     };
     let in_file = |(scan, _): &Job<'_>| scan.is_in_file();
     let mut of_tables = jobs
@@ -502,7 +503,7 @@ fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<Made> {
         .collect::<Vec<_>>()
         .into_iter();
     let others = jobs.par_iter().filter(|job| !in_file(job));
-    let others = others.map(|job| make(job, &Unwatched));
+    let others = others.map(|job| make(job, &NoObserver));
     let mut others = others.collect::<Vec<_>>().into_iter();
     let next = |job| {
         if in_file(job) {

@@ -9,12 +9,12 @@ use brdf_core::published::PUBLISHED;
 use brdf_core::scene::{Azimuth, Coordinates, Domain, Scene};
 use brdf_core::{AnyBrdf, ModelParameters, ThreeParameterBrdf};
 use brdf_fit::model::Model;
-use brdf_fit::output::{self, check_outputs, complain, write_file, write_json};
+use brdf_fit::output::{self, check_outputs, print_error, write_file, write_json};
 use brdf_fit::plot::{Figure, PlotError};
 use brdf_fit::read::{ReadError, ReadOptions, Scan};
 use brdf_fit::report::Document;
-use brdf_fit::trade::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
-use brdf_fit::trade::fitting::{FitTrade, trade_fits, write_fit_trades};
+use brdf_fit::tradeoff::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
+use brdf_fit::tradeoff::fitting::{FitTrade, trade_fits, write_fit_trades};
 use brdf_fit::{FitOptions, RefractiveIndex};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::Serialize;
@@ -210,7 +210,7 @@ fn main() -> ExitCode {
         Ok(false) => ExitCode::from(1),
         Err(messages) => {
             for message in messages {
-                complain(&message);
+                print_error(&message);
             }
             ExitCode::from(2)
         }
@@ -297,7 +297,7 @@ fn compare_fits(fitting: &Fitting) -> Outcome {
             }
             Err(error) => {
                 failed = true;
-                complain(&format!("{}: {error}", fitting.file.display()));
+                print_error(&format!("{}: {error}", fitting.file.display()));
             }
         }
     }

@@ -10,16 +10,16 @@ use std::io::{self, Write};
 
 use brdf_core::AnyBrdf;
 
-use super::coating::{Coating, Fitted};
 use super::domain::{LIMIT_DEG, from_narrow, spread, value, write_comments};
-use super::table::{At, Table, Tabulated};
+use super::interpolated::{At, Table, Tabulated};
+use super::material::{Fitted, Material};
 use super::target::ExportError;
 
 /// Writes all fits of the coating, or the only one where it has no wavelength.
 ///
 /// Errors: several fits, of which one has no wavelength; the tolerance cannot be kept to.
 pub(super) fn write(
-    coating: &Coating,
+    coating: &Material,
     tolerance: f64,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
@@ -137,7 +137,8 @@ mod tests {
 
     use super::*;
     use crate::Measurements;
-    use crate::read::{Format, ReadOptions};
+    use crate::read::ReadOptions;
+    use crate::scan::Format;
 
     fn fitted(wavelength_um: Option<f64>, k1: f64) -> Fitted {
         let parameters = Parameters::new(0.225, 0.246, k1).unwrap();
@@ -152,7 +153,7 @@ mod tests {
 
     fn written(fits: Vec<Fitted>) -> Measurements {
         let mut bytes = Vec::new();
-        write(&Coating { fits }, 3e-2, &mut bytes).unwrap();
+        write(&Material { fits }, 3e-2, &mut bytes).unwrap();
         Measurements::from_bytes("a", &bytes, &ReadOptions::default()).unwrap()
     }
 
@@ -180,7 +181,7 @@ mod tests {
     fn a_fit_without_a_wavelength_is_a_brdf() {
         let scan = written(vec![fitted(None, 0.9)]);
         assert_eq!(scan.wavelengths(), [None]);
-        let two = Coating {
+        let two = Material {
             fits: vec![fitted(None, 0.9), fitted(Some(0.6), 0.9)],
         };
         let error = write(&two, 3e-2, &mut Vec::new()).unwrap_err().to_string();

@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use brdf_core::Geometry;
 
-use super::coating::{Coating, Fitted};
 use super::domain::parameters;
+use super::material::{Fitted, Material};
 use super::target::ExportError;
 
 /// More points are no table that anyone wants to read.
@@ -107,7 +107,7 @@ fn steps(from: f64, to: f64, step: f64) -> Result<Vec<f64>, String> {
 
 /// Writes f_r of every fit on the grid.
 pub(super) fn write(
-    coating: &Coating,
+    coating: &Material,
     grid: &AngleGrid,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
@@ -128,7 +128,7 @@ pub(super) fn write(
     Ok(())
 }
 
-fn write_header(coating: &Coating, writer: &mut dyn Write) -> io::Result<()> {
+fn write_header(coating: &Material, writer: &mut dyn Write) -> io::Result<()> {
     for fit in &coating.fits {
         let file = fit.file.replace(['\n', '\r'], " ");
         let wavelength = fit
@@ -177,7 +177,7 @@ mod tests {
         }
     }
 
-    fn written(coating: &Coating, grid: &str) -> Measurements {
+    fn written(coating: &Material, grid: &str) -> Measurements {
         let mut bytes = Vec::new();
         write(coating, &grid.parse().unwrap(), &mut bytes).unwrap();
         Measurements::from_reader(bytes.as_slice()).unwrap()
@@ -208,13 +208,13 @@ mod tests {
 
     #[test]
     fn several_wavelengths_stand_in_one_file_and_one_without_alone() {
-        let coating = Coating {
+        let coating = Material {
             fits: vec![fitted(Some(0.63)), fitted(Some(0.91))],
         };
         let scan = written(&coating, "psi=10 theta=20,30");
         assert_eq!(scan.wavelengths(), [Some(0.63), Some(0.91)]);
         assert_eq!(scan.refractive_index.unwrap().at(Some(0.91)), Some(1.6));
-        let coating = Coating {
+        let coating = Material {
             fits: vec![fitted(None)],
         };
         assert_eq!(written(&coating, "").readings().len(), 8 * 33);
@@ -228,7 +228,7 @@ mod tests {
             phi in -180.0..180.0_f64,
         ) {
             let fit = fitted(Some(0.91));
-            let coating = Coating { fits: vec![fit.clone()] };
+            let coating = Material { fits: vec![fit.clone()] };
             let scan = written(&coating, &format!("psi={psi} theta={theta} phi={phi}"));
             let reading = scan.readings()[0];
             let read = [reading.psi, reading.theta, reading.phi];

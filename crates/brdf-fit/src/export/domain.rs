@@ -5,8 +5,8 @@ use std::io::{self, Write};
 
 use brdf_core::{AnyBrdf, Geometry};
 
-use super::coating::Fitted;
-use super::table::Table;
+use super::interpolated::Table;
+use super::material::Fitted;
 
 /// Up to this angle from the normal, of incidence and of view, a table keeps to its tolerance.
 pub(super) const LIMIT_DEG: f64 = 85.0;

@@ -7,8 +7,8 @@ use std::io::{self, Write};
 use brdf_core::{AnyBrdf, Geometry};
 use rayon::prelude::*;
 
-use super::coating::Fitted;
 use super::domain::LIMIT_DEG;
+use super::material::Fitted;
 use super::target::ExportError;
 use crate::read::merl::{Bins, Channel};
 

@@ -2,19 +2,19 @@
 //! form.
 
 mod astm;
-mod coating;
 mod csv;
 mod domain;
+mod interpolated;
+mod material;
 mod merl;
 mod mitsuba;
 mod rgb;
 mod source;
-mod table;
 mod target;
 mod zemax;
 
-pub use coating::{Coating, CoatingError, Fitted};
 pub use csv::AngleGrid;
+pub use material::{Fitted, Material, MaterialError};
 pub use merl::LookupError;
 pub use rgb::{COLOURS, PRIMARIES_UM, REACH_UM};
 pub use source::{Language, NameError};

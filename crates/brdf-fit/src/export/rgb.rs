@@ -1,9 +1,9 @@
 //! Red, green and blue of a coating.
 
-use super::coating::{Coating, CoatingError, Fitted};
+use super::material::{Fitted, Material, MaterialError};
 use crate::read::merl::Channel;
 
-/// The colours, in the order of [`Coating::rgb`].
+/// The colours, in the order of [`Material::rgb`].
 pub const COLOURS: [&str; 3] = [
     Channel::Red.name(),
     Channel::Green.name(),
@@ -20,13 +20,13 @@ pub const PRIMARIES_UM: [f64; 3] = [
 /// How far from its primary the fit of a colour may be, in micrometres.
 pub const REACH_UM: f64 = 0.06;
 
-impl Coating {
+impl Material {
     /// The fits that stand for red, green and blue: those of the wavelengths that are given, in
     /// micrometres; the only fit there is, for grey; or those nearest to the [`PRIMARIES_UM`].
     ///
     /// Errors: a fit is not within 1 % of its wavelength, or, where none is given, not within
     /// [`REACH_UM`] of its primary.
-    pub fn rgb(&self, wavelengths_um: Option<[f64; 3]>) -> Result<[&Fitted; 3], CoatingError> {
+    pub fn rgb(&self, wavelengths_um: Option<[f64; 3]>) -> Result<[&Fitted; 3], MaterialError> {
         if let Some([red, green, blue]) = wavelengths_um {
             let fit = |wavelength_um| self.at_wavelength(wavelength_um);
             return Ok([fit(red)?, fit(green)?, fit(blue)?]);
@@ -36,7 +36,7 @@ impl Coating {
         }
         let fit = |i| {
             self.within(PRIMARIES_UM[i], REACH_UM)
-                .ok_or_else(|| CoatingError::NoColour {
+                .ok_or_else(|| MaterialError::NoColour {
                     colour: COLOURS[i],
                     primary_um: PRIMARIES_UM[i],
                     reach_um: REACH_UM,
@@ -53,7 +53,7 @@ mod tests {
 
     use super::*;
 
-    fn coating(wavelengths_um: &[Option<f64>]) -> Coating {
+    fn coating(wavelengths_um: &[Option<f64>]) -> Material {
         let at = ModelParameters {
             k2: 1.0,
             kd: 0.1,
@@ -68,12 +68,12 @@ mod tests {
             e_percent: 1.0,
             psi_max_deg: 60.0,
         });
-        Coating {
+        Material {
             fits: fits.collect(),
         }
     }
 
-    fn colours(coating: &Coating, wavelengths_um: Option<[f64; 3]>) -> [Option<f64>; 3] {
+    fn colours(coating: &Material, wavelengths_um: Option<[f64; 3]>) -> [Option<f64>; 3] {
         coating
             .rgb(wavelengths_um)
             .unwrap()

@@ -5,17 +5,17 @@ use std::str::FromStr;
 
 use brdf_core::GeometryError;
 
-use super::coating::{Coating, CoatingError};
 use super::csv::AngleGrid;
+use super::interpolated::{MOST_ENTRIES, Unreachable};
+use super::material::{Material, MaterialError};
 use super::merl::{self, LookupError};
 use super::source::{Language, NameError, Source};
-use super::table::{MOST_ENTRIES, Unreachable};
 use super::{astm, csv, mitsuba, zemax};
 
 /// A form in which a coating leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// The model as versioned JSON: what [`Coating::read`] reads.
+    /// The model as versioned JSON: what [`Material::read`] reads.
     Json,
     /// A MERL table of three channels.
     Merl,
@@ -79,7 +79,7 @@ pub struct ExportOptions {
     pub tolerance: Option<f64>,
     /// The angles of our own table.
     pub grid: AngleGrid,
-    /// The wavelengths in micrometres that stand for red, green and blue; see [`Coating::rgb`].
+    /// The wavelengths in micrometres that stand for red, green and blue; see [`Material::rgb`].
     pub rgb: Option<[f64; 3]>,
 }
 
@@ -100,7 +100,7 @@ impl Default for ExportOptions {
 pub enum ExportError {
     /// The form has no room for it.
     #[error(transparent)]
-    Coating(#[from] CoatingError),
+    Material(#[from] MaterialError),
     /// No table of a size that is of use keeps to the tolerance.
     #[error(
         "a table within {tolerance:e} has more than {MOST_ENTRIES} entries: expected {}",
@@ -152,7 +152,7 @@ fn expected(reachable: Option<f64>) -> String {
 
 /// Writes a coating in a form. What there is to say of it: the error of a table of fixed bins.
 pub fn export(
-    coating: &Coating,
+    coating: &Material,
     target: Target,
     options: &ExportOptions,
     writer: &mut dyn Write,

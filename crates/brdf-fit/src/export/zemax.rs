@@ -11,9 +11,9 @@ use std::io::{self, Write};
 
 use brdf_core::AnyBrdf;
 
-use super::coating::Fitted;
 use super::domain::{LIMIT_DEG, from_narrow, spread, value};
-use super::table::{At, Table, Tabulated};
+use super::interpolated::{At, Table, Tabulated};
+use super::material::Fitted;
 use super::target::ExportError;
 use crate::read::zemax::from_specular;
 
@@ -141,7 +141,8 @@ mod tests {
 
     use super::*;
     use crate::Measurements;
-    use crate::read::{Format, ReadOptions};
+    use crate::read::ReadOptions;
+    use crate::scan::Format;
 
     fn fitted() -> Fitted {
         let parameters = Parameters::new(0.225, 0.246, 0.9).unwrap();

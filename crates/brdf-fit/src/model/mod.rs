@@ -1,7 +1,7 @@
 //! The models that can be fitted: the paper's, its simpler and its richer relatives, and the
 //! neighbours that a user would otherwise take.
 
-mod held;
+mod fixed;
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use brdf_core::facet::P_DOMAIN;
 use brdf_core::{Family, ModelParameters};
 use serde::{Deserialize, Serialize};
 
-pub use held::{Held, HeldModel};
+pub use fixed::{FixedParameters, ReducedModel};
 
 /// The range of k1 in a fit. Far below the resolution of any goniometer at one end; at the other
 /// the facet distribution no longer changes (its limit is sec alpha).
@@ -21,7 +21,7 @@ pub const K1_RANGE: (f64, f64) = (1e-6, 1e3);
 pub const N_RANGE: (f64, f64) = (N_DOMAIN.0, 6.0);
 
 /// The refractive index where a fit of n starts when nobody says another: that of most binders.
-pub const USUAL_N: f64 = 1.5;
+pub const DEFAULT_N: f64 = 1.5;
 
 /// One number of a model, in the order of [`ModelParameters`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -137,7 +137,7 @@ pub enum Model {
 
 impl Model {
     /// The ladder, from the smallest to the largest.
-    pub const LADDER: [Self; 6] = [
+    pub const HIERARCHY: [Self; 6] = [
         Self::Lambert,
         Self::Specular,
         Self::Three,
@@ -147,7 +147,7 @@ impl Model {
     ];
 
     /// What is compared: the ladder from the paper's model on, and the neighbours.
-    pub const COMPARED: [Self; 8] = [
+    pub const WITH_REFERENCES: [Self; 8] = [
         Self::Three,
         Self::ThreeN,
         Self::SmithN,
@@ -213,7 +213,7 @@ impl Model {
 
     /// A start of this model: the parameters that it does not have take their neutral values.
     pub fn start(self, at: ModelParameters) -> ModelParameters {
-        HeldModel::from(self).start(at)
+        ReducedModel::from(self).start(at)
     }
 
     /// Its name on the command line and in files.

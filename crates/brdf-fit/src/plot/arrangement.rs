@@ -10,7 +10,7 @@ use super::style::TEXT;
 use super::title::Title;
 use super::view::{Layout, Scale, View};
 use super::{Figure, PlotError, Sigma, polar, residuals, theory};
-use crate::measurement::Measurements;
+use crate::scan::Measurements;
 
 /// The part of the height that the residuals take.
 const RESIDUALS: f64 = 0.28;

@@ -8,8 +8,8 @@ use super::Sigma;
 use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
 use super::selection::Selection;
 use super::view::{Scale, View};
-use crate::measurement::{Measurement, Measurements};
-use crate::words::{counted, in_degrees};
+use crate::format::{counted, in_degrees};
+use crate::scan::{Measurement, Measurements};
 
 /// The line of the theory ends here, in degrees: at 90 deg it may be anything.
 const THEORY_END_DEG: f64 = 89.5;

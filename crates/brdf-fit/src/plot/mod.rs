@@ -50,9 +50,9 @@ use std::path::PathBuf;
 
 use brdf_core::{AnyBrdf, Geometry, GeometryError, ParameterError};
 
-use crate::measurement::Measurements;
+use crate::fit::Fit;
 use crate::output::WriteError;
-use crate::stages::Fit;
+use crate::scan::Measurements;
 use curves::{Curves, Source};
 use title::Title;
 
@@ -173,10 +173,10 @@ mod tests {
     use resvg::usvg::{Options, Tree};
 
     use super::*;
-    use crate::measurement::Measurement;
+    use crate::fit::{FitOptions, fit};
     use crate::model::Model;
-    use crate::stages::{FitOptions, fit};
-    use crate::synthetic::scan;
+    use crate::scan::Measurement;
+    use crate::scan::synthetic::scan;
     use crate::{Measurements, RefractiveIndex};
 
     fn lacquer() -> Measurements {

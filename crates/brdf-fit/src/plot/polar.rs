@@ -12,8 +12,8 @@ use super::theory::legend;
 use super::title::Title;
 use super::view::View;
 use super::{Figure, PlotError};
-use crate::read::Side;
-use crate::words::counted;
+use crate::format::counted;
+use crate::scan::Side;
 
 /// Where the surface element lies, and how far from it the axis ends.
 const CENTRE: Place = (400.0, 478.0);

@@ -7,7 +7,7 @@ use super::palette::MarkShape;
 use super::style::{MAIN, POINTED_OUT};
 use super::title::{Title, short};
 use super::{Figure, PlotError};
-use crate::stages::Fit;
+use crate::fit::Fit;
 
 /// E of a noise-free scan goes down to rounding: its axis ends so many decades below the top.
 const DECADES: i32 = 10;

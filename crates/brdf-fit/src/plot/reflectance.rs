@@ -8,7 +8,7 @@ use super::frame::{Frame, Key, Legend, WHOLE, draw_title};
 use super::style::{INK, MAIN, POINTED_OUT};
 use super::title::{Title, short};
 use super::{Figure, PlotError};
-use crate::stages::Fit;
+use crate::fit::Fit;
 
 /// The figure ends here, in degrees, as the energy check does.
 const LAST_DEG: u32 = 89;

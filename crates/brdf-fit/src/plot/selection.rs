@@ -3,7 +3,7 @@
 //! change.
 
 use super::view::View;
-use crate::measurement::{Incidence, Measurements};
+use crate::scan::{Incidence, Measurements};
 
 /// A column with more readings is thinned.
 const A_COLUMN: usize = 3;
@@ -131,8 +131,8 @@ fn thinned(column: &[(f64, usize)], brdf: impl Fn(usize) -> f64) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measurement::Measurement;
-    use crate::read::Side;
+    use crate::scan::Measurement;
+    use crate::scan::Side;
 
     fn scan(readings: impl IntoIterator<Item = (f64, f64, f64, f64)>) -> Measurements {
         let reading = |(psi_deg, theta_deg, phi_deg, brdf): (f64, f64, f64, f64)| Measurement {

@@ -10,7 +10,7 @@ use super::style::{INK, ink};
 use super::title::Title;
 use super::view::{Scale, View};
 use super::{Figure, PlotError};
-use crate::words::counted;
+use crate::format::counted;
 
 /// On a linear axis.
 pub(super) fn linear(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {

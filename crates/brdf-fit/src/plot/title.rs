@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use crate::measurement::Measurements;
+use crate::fit::Fit;
 use crate::model::{Model, Parameter};
-use crate::stages::Fit;
+use crate::scan::Measurements;
 
 /// A longer name of a sample is cut: it would not fit above the figure.
 const LONGEST: usize = 105;
@@ -69,19 +69,19 @@ fn parameters(fit: &Fit) -> String {
         .into_iter()
         .filter(|&parameter| model.frees(parameter) || shown_fixed(model, parameter));
     let words = shown.map(|parameter| {
-        let held = fit.options.held.get(parameter).map_or("", |_| " (held)");
-        format!("{parameter} = {}{held}", short(parameter.of(&at)))
+        let fixed = fit.options.fixed.get(parameter).map_or("", |_| " (held)");
+        format!("{parameter} = {}{fixed}", short(parameter.of(&at)))
     });
     words.collect::<Vec<_>>().join(", ")
 }
 
 /// What is held and what was fitted, in the words of a caption.
 fn particulars(fit: &Fit) -> String {
-    let held = &fit.options.held;
-    let held = (!held.is_empty()).then(|| format!(", {held} held"));
+    let fixed = &fit.options.fixed;
+    let fixed = (!fixed.is_empty()).then(|| format!(", {fixed} held"));
     let scope = fit.options.scope();
     let scope = scope.map(|scope| format!(", fitted to {scope} alone"));
-    held.into_iter().chain(scope).collect()
+    fixed.into_iter().chain(scope).collect()
 }
 
 fn shown_fixed(model: Model, parameter: Parameter) -> bool {

@@ -10,7 +10,7 @@ use super::palette::MarkShape;
 use super::style::{INK, MAIN, POINTED_OUT};
 use super::title::{Title, shortened};
 use super::{Figure, PlotError};
-use crate::words::counted;
+use crate::format::counted;
 
 /// All decades of the costs and errors of a trade.
 const DECADES: i32 = 40;
@@ -27,7 +27,7 @@ pub struct TradePoint {
     pub x: f64,
     /// How far it errs; zero is shown at the lower edge.
     pub y: f64,
-    /// Whether it is on the Pareto front: see [`pareto`](crate::trade::pareto::pareto).
+    /// Whether it is on the Pareto front: see [`pareto`](crate::tradeoff::pareto::pareto).
     pub pareto: bool,
     /// Whether it is the one that is taken.
     pub chosen: bool,

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::measurement::angle_between;
-use crate::read::Side;
-use crate::words::as_degrees;
+use crate::format::as_degrees;
+use crate::scan::Side;
+use crate::scan::angle_between;
 
 /// What is shown of the readings and of the theory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]

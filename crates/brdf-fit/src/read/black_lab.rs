@@ -23,8 +23,9 @@ use super::angles::{AngleUnit, TwoDirections};
 use super::text::{
     BEYOND_HORIZON, Field, Quantity, Text, is_angle, is_reading, left_out, micrometres, words,
 };
-use super::{Convention, Format, ReadError, ReadOptions};
-use crate::measurement::{Measurement, Measurements, Metadata};
+use super::{ReadError, ReadOptions};
+use crate::scan::{Convention, Format};
+use crate::scan::{Measurement, Measurements, Metadata};
 
 const ANGLES: [&str; 4] = ["src_z", "src_a", "view_z", "view_a"];
 
@@ -194,7 +195,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::read::Side;
+    use crate::scan::Side;
 
     const TWO: &str = "BRF Values\nTest paint\nMeasurements taken on a day\n\
         src_z\tsrc_a\tview_z\tview_a\t630.79nm\t852.23nm\n\

@@ -28,9 +28,10 @@ use brdf_core::brdf::check_refractive_index;
 use super::text::{
     Field, Quantity, Said, Text, comment_of, is_deviation, is_reading, read_bytes, shown,
 };
-use super::{Convention, ReadError, fields};
-use crate::measurement::{Measurement, Measurements};
-use crate::refractive_index::RefractiveIndex;
+use super::{ReadError, fields};
+use crate::scan::Convention;
+use crate::scan::RefractiveIndex;
+use crate::scan::{Measurement, Measurements};
 
 impl Measurements {
     /// Reads a file in the model's convention.
@@ -451,7 +452,7 @@ impl IndexColumn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::read::Side;
+    use crate::scan::Side;
 
     fn scan(text: &str) -> Measurements {
         Measurements::from_reader(text.as_bytes()).unwrap()

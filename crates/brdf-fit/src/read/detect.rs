@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::text::{lines, without_mark};
-use super::{Format, csv, goniometer, merl};
+use super::{csv, goniometer, merl};
+use crate::scan::Format;
 
 /// How much of a file is looked at, in bytes: a header with its comments is not longer.
 pub(super) const HEAD: u64 = 65_536;

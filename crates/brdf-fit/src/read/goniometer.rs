@@ -25,8 +25,9 @@
 use super::text::{
     Field, Quantity, Said, Text, comment_of, is_angle, is_reading, left_out, lines, parse_number,
 };
-use super::{Convention, Format, ReadError, fields};
-use crate::measurement::{Measurement, Measurements};
+use super::{ReadError, fields};
+use crate::scan::{Convention, Format};
+use crate::scan::{Measurement, Measurements};
 
 const PSI: &str = "incidence";
 const THETA: &str = "view";
@@ -233,7 +234,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::read::Side;
+    use crate::scan::Side;
 
     const TWO: &str = "# wavelength_um: 0.63\n# refractive_index: 1.5\n\n\
                        theta_deg,10,30\n-60,0.1,0.2\n20,,0.4\n";

@@ -31,9 +31,10 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::detect::HEAD;
-use super::{Convention, Format, ReadError, ReadOptions, text};
-use crate::measurement::{Measurement, Measurements};
-use crate::words::counted;
+use super::{ReadError, ReadOptions, text};
+use crate::format::counted;
+use crate::scan::{Convention, Format};
+use crate::scan::{Measurement, Measurements};
 
 /// Bytes of the three numbers of bins.
 const HEADER: usize = 12;

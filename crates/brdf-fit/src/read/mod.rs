@@ -6,117 +6,24 @@ pub mod astm;
 pub mod black_lab;
 pub mod csv;
 mod detect;
+mod error;
 mod fields;
 pub mod goniometer;
 pub mod merl;
+mod options;
 mod scan;
 mod text;
 pub mod zemax;
 
+pub use error::ReadError;
+pub use options::ReadOptions;
 pub use scan::Scan;
 
-use std::fmt;
 use std::fs::File;
 use std::io::{Cursor, Read as _};
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
+use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
-use crate::measurement::Measurements;
-
-/// A format of files with measured values.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Format {
-    /// The project's own table: [`csv`].
-    #[default]
-    Csv,
-    /// A MERL table: [`merl`].
-    Merl,
-    /// ASTM E1392 and E2387 text, also as Cornell wrote it: [`astm`].
-    Astm,
-    /// Zemax tabular BSDF: [`zemax`].
-    Zemax,
-    /// Reflectance factors of the Black Lab: [`black_lab`].
-    BlackLab,
-    /// Incidences in columns, views in rows: [`goniometer`].
-    Goniometer,
-}
-
-impl Format {
-    /// All formats, with the names that options and files give them.
-    pub const NAMED: [(Self, &str); 6] = [
-        (Self::Csv, "csv"),
-        (Self::Merl, "merl"),
-        (Self::Astm, "astm"),
-        (Self::Zemax, "zemax"),
-        (Self::BlackLab, "black-lab"),
-        (Self::Goniometer, "goniometer"),
-    ];
-
-    /// The name that options and files give it.
-    pub fn name(self) -> &'static str {
-        let found = Self::NAMED.iter().find(|(format, _)| *format == self);
-        found.map_or("", |(_, name)| name)
-    }
-
-    fn names() -> String {
-        Self::NAMED.map(|(_, name)| name).join(", ")
-    }
-}
-
-impl FromStr for Format {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::NAMED.iter().find(|(_, name)| *name == text);
-        found.map(|(format, _)| *format).ok_or_else(|| {
-            let names = Self::names();
-            format!("\"{text}\" is not a format: expected one of {names}")
-        })
-    }
-}
-
-/// How a file is read.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct ReadOptions {
-    /// The format; found by the content, then by the extension, where it is not given.
-    pub format: Option<Format>,
-    /// The side on which the file counts theta positive; as its format has it where it is not given.
-    pub theta_positive: Option<Side>,
-    /// The side on which the file's azimuth is zero; as its format has it where it is not given.
-    pub phi_zero: Option<Side>,
-    /// How many readings of each wavelength are kept, evenly over the directions; all where it is not
-    /// given.
-    pub sample: Option<usize>,
-}
-
-impl ReadOptions {
-    /// The convention of a file whose format has one of its own.
-    pub fn convention(&self, of_format: Convention) -> Convention {
-        Convention {
-            theta_positive: self.theta_positive.unwrap_or(of_format.theta_positive),
-            phi_zero: self.phi_zero.unwrap_or(of_format.phi_zero),
-        }
-    }
-
-    /// The convention of a file whose format leaves no choice.
-    ///
-    /// Errors: an option says that it is another, and `why` it cannot be.
-    fn fixed(
-        &self,
-        path: &Path,
-        of_format: Convention,
-        why: &str,
-    ) -> Result<Convention, ReadError> {
-        if self.convention(of_format) == of_format {
-            return Ok(of_format);
-        }
-        let message = format!("its sides cannot be chosen: {why}");
-        Err(text::file_error(path, message))
-    }
-}
+use crate::scan::{Convention, Format, Measurements};
 
 impl Measurements {
     /// Reads a file of any [`Format`].
@@ -182,121 +89,5 @@ fn of_text(
         Format::Zemax => zemax::read(text, options),
         Format::BlackLab => black_lab::read(text, options),
         Format::Goniometer => goniometer::read(text, options.convention(Convention::default())),
-    }
-}
-
-/// Which side of the surface normal, or which azimuth, a file calls positive or zero.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Side {
-    /// The source's side: the model's convention.
-    #[default]
-    Source,
-    /// The side of the mirror direction: as in ASTM E2387 and most goniometers.
-    Forward,
-}
-
-impl FromStr for Side {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "source" => Ok(Self::Source),
-            "forward" => Ok(Self::Forward),
-            _ => Err(format!("\"{text}\": expected source or forward")),
-        }
-    }
-}
-
-/// The angular convention of a file.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Convention {
-    /// The side on which theta counts positive.
-    pub theta_positive: Side,
-    /// The side on which phi is zero.
-    pub phi_zero: Side,
-}
-
-impl Convention {
-    /// Theta and phi in radians in the model's convention, from degrees in this one.
-    fn in_model(self, theta_deg: f64, phi_deg: f64) -> (f64, f64) {
-        let theta = match self.theta_positive {
-            Side::Source => theta_deg,
-            Side::Forward => -theta_deg,
-        };
-        // In degrees, so that 180 deg remains what it is.
-        let phi = match self.phi_zero {
-            Side::Source => phi_deg,
-            Side::Forward => phi_deg + 180.0,
-        };
-        (theta.to_radians(), phi.to_radians())
-    }
-}
-
-/// What differs from the model's convention, in words; nothing where it is that.
-impl fmt::Display for Convention {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.theta_positive, self.phi_zero) {
-            (Side::Source, Side::Source) => Ok(()),
-            (Side::Forward, Side::Source) => f.write_str("theta positive forward"),
-            (Side::Source, Side::Forward) => f.write_str("phi zero forward"),
-            (Side::Forward, Side::Forward) => f.write_str("theta positive and phi zero forward"),
-        }
-    }
-}
-
-/// Why a file cannot be read as a scan: where, what stands there, and what was expected.
-#[derive(Debug, thiserror::Error)]
-pub enum ReadError {
-    /// The file cannot be opened or read.
-    #[error("{}: cannot be read: {error}", path.display())]
-    Io {
-        /// The file.
-        path: PathBuf,
-        /// What the system says.
-        error: std::io::Error,
-    },
-    /// Something in the file as a whole.
-    #[error("{}: {message}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, and what was expected.
-        message: String,
-    },
-    /// Something on one line.
-    #[error("{}, line {line}: {message}", path.display())]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: u64,
-        /// What is wrong, and what was expected.
-        message: String,
-    },
-    /// One value.
-    #[error("{}, line {line}, column {column}: \"{value}\" {message}", path.display())]
-    Value {
-        /// The file.
-        path: PathBuf,
-        /// The line, from 1.
-        line: u64,
-        /// The name of the column.
-        column: String,
-        /// What stands there.
-        value: String,
-        /// What was expected.
-        message: String,
-    },
-}
-
-impl ReadError {
-    /// The same of a file that may be of a format that is not known.
-    fn with_known_formats(mut self) -> Self {
-        if let Self::File { message, .. } | Self::Line { message, .. } = &mut self {
-            let names = Format::names();
-            *message = format!("{message}; known formats are {names}");
-        }
-        self
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::merl::{self, Channel, Table};
 use super::{ReadError, ReadOptions};
-use crate::measurement::Measurements;
+use crate::scan::Measurements;
 
 /// The readings of one wavelength of a file.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::ReadError;
-use crate::measurement::Metadata;
-use crate::refractive_index::RefractiveIndex;
+use crate::scan::Metadata;
+use crate::scan::RefractiveIndex;
 
 /// A longer line is not a line of readings.
 pub(super) const MAX_LINE: usize = 65_536;

@@ -52,9 +52,10 @@
 //! 70 deg the values at azimuth 0 reach to radial 140 deg and those at 180 to 10 deg.
 
 use super::text::{BEYOND_HORIZON, Field, Text, comment_of, left_out, words};
-use super::{Convention, Format, ReadError, ReadOptions};
-use crate::measurement::{Measurement, Measurements, Metadata};
-use crate::refractive_index::RefractiveIndex;
+use super::{ReadError, ReadOptions};
+use crate::scan::RefractiveIndex;
+use crate::scan::{Convention, Format};
+use crate::scan::{Measurement, Measurements, Metadata};
 
 pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
     let why = "the format counts from the specular ray, and azimuth 0 points to the normal";
@@ -435,7 +436,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::read::Side;
+    use crate::scan::Side;
 
     const SMALL: &str = "# sample: Test paint\n# wavelength_um: 0.65\nSource\tMeasured\n\
         Symmetry\tPlaneSymmetrical\nSpectralContent\tMonochrome\nScatterType\tBRDF\n\

@@ -5,11 +5,11 @@ use std::io;
 use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 
 use super::Report;
-use crate::measurement::Measurements;
+use crate::fit::Fit;
+use crate::format::in_degrees;
 use crate::plot::theory_curves;
 use crate::read::Scan;
-use crate::stages::Fit;
-use crate::words::in_degrees;
+use crate::scan::Measurements;
 
 /// The header of the CSV for scripts. E is in percent, each over its own stage's readings.
 pub const PARAMETER_COLUMNS: [&str; 12] = [

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::error::Category;
 
 use super::Report;
-use crate::refractive_index::WAVELENGTH_TOLERANCE;
-use crate::stages::{FORMAT_VERSION, FitOptions};
+use crate::fit::{FORMAT_VERSION, FitOptions};
+use crate::scan::WAVELENGTH_TOLERANCE;
 
 /// The JSON document of a run.
 #[derive(Debug, Serialize, Deserialize)]
@@ -174,7 +174,7 @@ mod tests {
 
     use super::*;
     use crate::report::Depth;
-    use crate::synthetic::scan;
+    use crate::scan::synthetic::scan;
     use crate::{Measurements, RefractiveIndex};
 
     fn report(file: &str, wavelength_um: Option<f64>, max_iterations: u64) -> Report {

@@ -7,10 +7,10 @@ use brdf_core::{AnyBrdf, Geometry};
 use rayon::prelude::*;
 
 use super::{Report, html};
-use crate::measurement::Measurements;
 use crate::output::{WriteError, write_file};
 use crate::plot::{Figure, PlotError, figures, write_figures};
 use crate::read::{ReadError, Scan};
+use crate::scan::Measurements;
 
 /// The name of the page.
 pub const PAGE: &str = "report.html";

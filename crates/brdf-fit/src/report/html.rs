@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use super::Report;
-use crate::assessment::{Assessment, Rung};
+use crate::fit::Fit;
+use crate::format::{counted, shortest};
+use crate::inference::assessment::{Assessment, Candidate};
+use crate::inference::uncertainty::{Estimate, Knowledge, Uncertainty, rounded};
 use crate::model::Parameter;
 use crate::plot::Figure;
-use crate::stages::Fit;
-use crate::uncertainty::{Estimate, Knowledge, Uncertainty, rounded};
-use crate::words::{counted, shortest};
 
 const STYLE: &str = "
 body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
@@ -76,8 +76,8 @@ fn section(report: &Report, figures: &[Figure]) -> String {
         if let Some(scope) = fit.options.scope() {
             let _ = write!(text, "; stage 1 alone, {}", escaped(&scope));
         }
-        if !fit.options.held.is_empty() {
-            let _ = write!(text, "; held: {}", fit.options.held);
+        if !fit.options.fixed.is_empty() {
+            let _ = write!(text, "; fixed: {}", fit.options.fixed);
         }
     }
     text += "</p>\n";
@@ -229,7 +229,7 @@ fn incidences(fit: &Fit, assessment: Option<&Assessment>) -> String {
 }
 
 fn models(assessment: &Assessment) -> String {
-    let row = |rung: &Rung| {
+    let row = |rung: &Candidate| {
         let mut row = vec![
             rung.model.to_string(),
             format!("{:.3}", rung.e_percent),
@@ -308,7 +308,7 @@ fn escaped(text: &str) -> String {
 mod tests {
     use super::*;
     use crate::report::Depth;
-    use crate::synthetic::scan;
+    use crate::scan::synthetic::scan;
     use crate::{FitOptions, RefractiveIndex};
 
     #[test]

@@ -20,15 +20,15 @@ pub use text::Section;
 
 use serde::{Deserialize, Serialize};
 
-use crate::assessment::{Assessment, assess_watched, sufficient_model};
-use crate::measurement::{Measurement, Measurements, Metadata};
+use crate::fit::{Fit, FitError, FitOptions, fit_scan};
+use crate::inference::assessment::{Assessment, assess_observed, sufficient_model};
+use crate::inference::uncertainty::Uncertainty;
+use crate::inference::warning::{Warning, warnings};
 use crate::model::Model;
-use crate::read::{Convention, Format};
-use crate::solver::Ending;
-use crate::stages::{Fit, FitError, FitOptions, fit_scan};
-use crate::uncertainty::Uncertainty;
-use crate::warning::{Warning, warnings};
-use crate::watch::{Phase, Progress, Unwatched, Watch};
+use crate::progress::{NoObserver, Observer, Phase, Progress};
+use crate::scan::{Convention, Format};
+use crate::scan::{Measurement, Measurements, Metadata};
+use crate::solver::Termination;
 
 /// The result of one wavelength of one file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -89,7 +89,7 @@ pub enum ModelChoice {
     /// That of the options.
     Given,
     /// The smallest of the ladder that predicts well enough: see
-    /// [`Verdict`](crate::assessment::Verdict).
+    /// [`Verdict`](crate::inference::assessment::Verdict).
     Auto,
 }
 
@@ -111,17 +111,17 @@ impl Report {
         choice: ModelChoice,
         depth: Depth,
     ) -> (Self, Option<FitError>) {
-        Self::of_watched(measurements, options, choice, depth, &Unwatched)
+        Self::observed(measurements, options, choice, depth, &NoObserver)
     }
 
-    /// [`of_choice`](Self::of_choice), each step of which is told to `watch`, who can end it with
+    /// [`of_choice`](Self::of_choice), each step of which is told to `observer`, who can end it with
     /// [`FitError::Cancelled`]: the report then holds what was complete.
-    pub fn of_watched(
+    pub fn observed(
         measurements: &Measurements,
         options: &FitOptions,
         choice: ModelChoice,
         depth: Depth,
-        watch: &dyn Watch,
+        observer: &dyn Observer,
     ) -> (Self, Option<FitError>) {
         let mut report = Self {
             file: measurements.source.clone(),
@@ -141,8 +141,8 @@ impl Report {
             rejected: Vec::new(),
         };
         let filled = match choice {
-            ModelChoice::Given => report.fill(measurements, options, depth, watch),
-            ModelChoice::Auto => report.fill_by_choice(measurements, options, depth, watch),
+            ModelChoice::Given => report.fill(measurements, options, depth, observer),
+            ModelChoice::Auto => report.fill_by_choice(measurements, options, depth, observer),
         };
         let error = filled.err();
         report.error = error.as_ref().map(ToString::to_string);
@@ -154,11 +154,11 @@ impl Report {
         measurements: &Measurements,
         options: &FitOptions,
         depth: Depth,
-        watch: &dyn Watch,
+        observer: &dyn Observer,
     ) -> Result<(), FitError> {
         // What cannot be fitted at all is told by the paper's model.
-        self.model = sufficient_model(measurements, options, watch)?;
-        self.fill(measurements, &options.of_model(self.model), depth, watch)
+        self.model = sufficient_model(measurements, options, observer)?;
+        self.fill(measurements, &options.of_model(self.model), depth, observer)
     }
 
     fn fill(
@@ -166,24 +166,24 @@ impl Report {
         measurements: &Measurements,
         options: &FitOptions,
         depth: Depth,
-        watch: &dyn Watch,
+        observer: &dyn Observer,
     ) -> Result<(), FitError> {
-        let fitted = fit_scan(measurements, options, watch)?;
+        let fitted = fit_scan(measurements, options, observer)?;
         if let Some(robust) = &fitted.fit.robust {
             let readings = measurements.readings();
             let rejected = robust.rejected.iter().map(|r| readings[r.reading]);
             self.rejected = rejected.collect();
         }
         let fit = self.fit.insert(fitted.fit.clone());
-        let progress = Progress::begin(watch, Phase::Uncertainty)?;
+        let progress = Progress::begin(observer, Phase::Uncertainty)?;
         let uncertainty = Uncertainty::of_fit(&fitted, &progress)?;
         let fitted_readings = options.fitted_readings(measurements);
         self.warnings = warnings(&fitted_readings, fit, &uncertainty, &progress)?;
-        // Where everything is held there is nothing to be uncertain of.
+        // Where everything is fixed there is nothing to be uncertain of.
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
         if depth > Depth::Fit {
             let compare = depth == Depth::Compared;
-            self.assessment = Some(assess_watched(measurements, fit, compare, watch)?);
+            self.assessment = Some(assess_observed(measurements, fit, compare, observer)?);
         }
         Ok(())
     }
@@ -198,9 +198,9 @@ impl Report {
             .global_check
             .as_ref()
             .is_some_and(|check| check.lower_minimum_taken);
-        let word = match fit.last_stage().map(|stage| stage.ending) {
+        let word = match fit.last_stage().map(|stage| stage.termination) {
             _ if taken => "global",
-            Some(Ending::IterationLimit) => "iteration-limit",
+            Some(Termination::IterationLimit) => "iteration-limit",
             _ => "ok",
         };
         let alone = if fit.stage2.is_none() {

@@ -5,15 +5,15 @@ use std::fmt::Write as _;
 use brdf_core::{ModelParameters, Parameters};
 
 use super::Report;
-use crate::assessment::{Assessment, Physics};
-use crate::criterion::MOST_FOLDS;
-use crate::measurement::Measurement;
+use crate::fit::robust::REJECTED;
+use crate::fit::{Fit, Stage};
+use crate::format::{counted, digits, in_degrees, shortest};
+use crate::inference::assessment::{Assessment, Physics};
+use crate::inference::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
 use crate::model::{K1_RANGE, Model, Parameter};
-use crate::read::Convention;
-use crate::robust::REJECTED;
-use crate::stages::{Fit, Stage};
-use crate::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
-use crate::words::{counted, digits, in_degrees, shortest};
+use crate::objective::MOST_FOLDS;
+use crate::scan::Convention;
+use crate::scan::Measurement;
 
 /// A part of what a person reads of a fit.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -143,7 +143,7 @@ fn stage_table(fit: &Fit) -> String {
             stage.evaluations,
             1e6 * stage.seconds,
             stage.method.short_name(),
-            stage.ending,
+            stage.termination,
             further_parameters(fit, &stage.parameters)
         )
     };
@@ -184,9 +184,9 @@ fn stage_table(fit: &Fit) -> String {
     if !weights.is_empty() {
         let _ = writeln!(text, "  readings weighted by {weights}");
     }
-    let held = &fit.options.held;
-    if !held.is_empty() {
-        let _ = writeln!(text, "  held: {held}");
+    let fixed = &fit.options.fixed;
+    if !fixed.is_empty() {
+        let _ = writeln!(text, "  fixed: {fixed}");
     }
     let Parameters { k2, kd, k1 } = fit.parameters;
     for (parameter, on_bound, name) in [
@@ -203,7 +203,7 @@ fn stage_table(fit: &Fit) -> String {
             "k1 = 1e3, the largest that is searched",
         ),
     ] {
-        if on_bound && held.get(parameter).is_none() {
+        if on_bound && fixed.get(parameter).is_none() {
             let _ = writeln!(text, "  on its bound: {name}");
         }
     }
@@ -260,8 +260,8 @@ fn global_check_line(fit: &Fit) -> String {
             digits(fit.e_percent),
             digits(check.stage2_e_percent)
         ),
-        Some(_) if fit.options.held.get(Parameter::K1).is_some() => {
-            "  global check: no lower minimum at the width that is held\n".to_owned()
+        Some(_) if fit.options.fixed.get(Parameter::K1).is_some() => {
+            "  global check: no lower minimum at the width that is fixed\n".to_owned()
         }
         Some(check) => format!(
             "  global check: no lower minimum for k1 from {:.0e} to {:.0e} ({} widths)\n",
@@ -529,7 +529,7 @@ fn physics_lines(physics: &Physics, fit: &Fit) -> String {
 mod tests {
     use super::*;
     use crate::report::Depth;
-    use crate::synthetic::scan;
+    use crate::scan::synthetic::scan;
     use crate::{FitOptions, RefractiveIndex};
 
     #[test]

@@ -9,8 +9,8 @@
 use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use nalgebra::{SMatrix, SVector};
 
-use super::Ending;
-use crate::criterion::NormalEquations;
+use super::Termination;
+use crate::objective::NormalEquations;
 
 /// A sum of squares with its normal equations.
 pub trait LeastSquares<const P: usize> {
@@ -43,7 +43,7 @@ pub struct LevenbergMarquardt<const P: usize> {
     damping_growth: f64,
     /// Squared scale of each parameter: the largest diagonal element of J^T J so far.
     scale: SVector<f64, P>,
-    ending: Option<Ending>,
+    termination: Option<Termination>,
     here: Option<NormalEquations<P>>,
 }
 
@@ -58,14 +58,14 @@ impl<const P: usize> LevenbergMarquardt<P> {
             damping: FIRST_DAMPING,
             damping_growth: 2.0,
             scale: SVector::zeros(),
-            ending: None,
+            termination: None,
             here: None,
         }
     }
 
     /// Why the solver stopped; `None` while it runs, or when its iterations were used up.
-    pub fn ending(&self) -> Option<Ending> {
-        self.ending
+    pub fn termination(&self) -> Option<Termination> {
+        self.termination
     }
 
     /// Takes over the normal equations of a new point.
@@ -199,7 +199,7 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
             return Err(Error::msg("Levenberg-Marquardt was not initialised"));
         };
         if self.gradient_is_zero(&param, &here) {
-            self.ending = Some(Ending::GradientZero);
+            self.termination = Some(Termination::GradientZero);
             return Ok((state.param(param).cost(here.error), None));
         }
         let Some(step) = self.step(&param, &here) else {
@@ -209,9 +209,9 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
         let promised = -step.dot(&(2.0 * here.gradient + here.matrix * step));
         let scaled = |v: &SVector<f64, P>| v.component_mul(v).dot(&self.scale).sqrt();
         if scaled(&step) <= STEP_TOLERANCE * scaled(&param) {
-            self.ending = Some(Ending::StepTooSmall);
+            self.termination = Some(Termination::StepTooSmall);
         } else if promised <= REDUCTION_TOLERANCE * here.error {
-            self.ending = Some(Ending::NoFurtherReduction);
+            self.termination = Some(Termination::NoFurtherReduction);
         }
         // Rounding of param + step must not leave the box.
         let trial = (param + step).sup(&self.lower).inf(&self.upper);
@@ -230,7 +230,7 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
     }
 
     fn terminate(&mut self, _state: &State<P>) -> TerminationStatus {
-        match self.ending {
+        match self.termination {
             Some(_) => TerminationStatus::Terminated(TerminationReason::SolverConverged),
             None => TerminationStatus::NotTerminated,
         }
@@ -284,7 +284,7 @@ mod tests {
         }
     }
 
-    fn minimum(problem: Quadratic, start: Vector2<f64>) -> (Vector2<f64>, Option<Ending>) {
+    fn minimum(problem: Quadratic, start: Vector2<f64>) -> (Vector2<f64>, Option<Termination>) {
         let solver = LevenbergMarquardt::new(Vector2::zeros(), Vector2::new(4.0, f64::INFINITY));
         let result = Executor::new(problem, solver)
             .configure(|state| state.param(start).max_iters(200))
@@ -293,7 +293,7 @@ mod tests {
         let best = argmin::core::State::get_best_param(&result.state)
             .copied()
             .unwrap();
-        (best, result.solver.ending())
+        (best, result.solver.termination())
     }
 
     #[test]
@@ -307,7 +307,7 @@ mod tests {
         let (found, ending) = minimum(problem, Vector2::new(3.0, 3.0));
         assert_eq!(found[0], 0.0);
         assert!((found[1] - 1.1).abs() < 1e-7);
-        assert_eq!(ending, Some(Ending::GradientZero));
+        assert_eq!(ending, Some(Termination::GradientZero));
     }
 
     /// With the first violated bound simply held, the step went to (4, 0), where E is larger.

@@ -2,7 +2,7 @@
 
 pub mod levenberg_marquardt;
 pub mod nelder_mead;
-pub(crate) mod told;
+pub(crate) mod observed;
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,13 +12,13 @@ use brdf_core::ModelParameters;
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::criterion::{Criterion, NormalEquations};
+use crate::fit::FitError;
 use crate::model::Parameter;
-use crate::stages::FitError;
-use crate::watch::Progress;
+use crate::objective::{NormalEquations, Objective};
+use crate::progress::Progress;
 use levenberg_marquardt::{LeastSquares, LevenbergMarquardt};
 use nelder_mead::{NelderMead, Unbounded};
-use told::{State, Told};
+use observed::{Observed, State};
 
 /// How a stage minimises E.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,7 +66,7 @@ impl FromStr for Method {
 /// Why a minimiser stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Ending {
+pub enum Termination {
     /// The gradient of E, but for what a bound stops, is zero to rounding.
     GradientZero,
     /// The step became smaller than the parameters can show.
@@ -79,7 +79,7 @@ pub enum Ending {
     IterationLimit,
 }
 
-impl fmt::Display for Ending {
+impl fmt::Display for Termination {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {
             Self::GradientZero => "gradient zero",
@@ -103,14 +103,14 @@ pub struct Minimum {
     /// How often E was evaluated, alone or with its derivatives.
     pub evaluations: u64,
     /// Why it stopped.
-    pub ending: Ending,
+    pub termination: Termination,
 }
 
 /// Minimises E over the free parameters from a starting point, each within its
 /// [range](Parameter::range); the others stay as they are. Each iteration is told, the start as
 /// iteration 0.
 pub fn minimise(
-    criterion: &Criterion,
+    objective: &Objective,
     method: Method,
     start: ModelParameters,
     free: &[Parameter],
@@ -124,35 +124,35 @@ pub fn minimise(
     };
     // The number of free parameters is known to the compiler from here on.
     let found = match *free {
-        [] => evaluated(criterion, start, progress)?,
-        [a] => Problem::new(criterion, start, [a]).minimise(&run)?,
-        [a, b] => Problem::new(criterion, start, [a, b]).minimise(&run)?,
-        [a, b, c] => Problem::new(criterion, start, [a, b, c]).minimise(&run)?,
-        [a, b, c, d] => Problem::new(criterion, start, [a, b, c, d]).minimise(&run)?,
-        [a, b, c, d, e, ..] => Problem::new(criterion, start, [a, b, c, d, e]).minimise(&run)?,
+        [] => evaluated(objective, start, progress)?,
+        [a] => Problem::new(objective, start, [a]).minimise(&run)?,
+        [a, b] => Problem::new(objective, start, [a, b]).minimise(&run)?,
+        [a, b, c] => Problem::new(objective, start, [a, b, c]).minimise(&run)?,
+        [a, b, c, d] => Problem::new(objective, start, [a, b, c, d]).minimise(&run)?,
+        [a, b, c, d, e, ..] => Problem::new(objective, start, [a, b, c, d, e]).minimise(&run)?,
     };
-    let parameters = onto_bounds(criterion, free, found.parameters);
+    let parameters = onto_bounds(objective, free, found.parameters);
     Ok(Minimum {
         parameters,
-        error: criterion.error(&parameters),
+        error: objective.error(&parameters),
         ..found
     })
 }
 
 /// E where nothing is free.
 fn evaluated(
-    criterion: &Criterion,
+    objective: &Objective,
     at: ModelParameters,
     progress: &Progress<'_>,
 ) -> Result<Minimum, FitError> {
-    let error = criterion.error(&at);
+    let error = objective.error(&at);
     progress.reach(error, &at)?;
     Ok(Minimum {
         parameters: at,
         error,
         iterations: 0,
         evaluations: 1,
-        ending: Ending::GradientZero,
+        termination: Termination::GradientZero,
     })
 }
 
@@ -166,16 +166,16 @@ struct Run<'a> {
 /// E as a function of the free parameters.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a, const P: usize> {
-    criterion: &'a Criterion,
+    objective: &'a Objective,
     start: ModelParameters,
     free: [Parameter; P],
 }
 
 impl<'a, const P: usize> Problem<'a, P> {
     /// E over the free parameters, the others being those of the start.
-    pub fn new(criterion: &'a Criterion, start: ModelParameters, free: [Parameter; P]) -> Self {
+    pub fn new(objective: &'a Objective, start: ModelParameters, free: [Parameter; P]) -> Self {
         Self {
-            criterion,
+            objective,
             start,
             free,
         }
@@ -207,7 +207,7 @@ impl<'a, const P: usize> Problem<'a, P> {
             self.vector(|parameter| parameter.range().1),
         );
         let (mut found, solver) = run.execute(self, solver, start, |x| self.parameters(x))?;
-        found.ending = solver.ending().unwrap_or(found.ending);
+        found.termination = solver.termination().unwrap_or(found.termination);
         Ok(found)
     }
 
@@ -217,7 +217,7 @@ impl<'a, const P: usize> Problem<'a, P> {
         let solver = NelderMead::new(start, problem.steps());
         let parameters = |x: &_| problem.to_parameters(x);
         let (mut found, solver) = run.execute(problem, solver, start, parameters)?;
-        found.ending = solver.ending().unwrap_or(found.ending);
+        found.termination = solver.termination().unwrap_or(found.termination);
         Ok(found)
     }
 }
@@ -232,7 +232,7 @@ impl Run<'_> {
         parameters: impl Fn(&SVector<f64, P>) -> ModelParameters,
     ) -> Result<(Minimum, S), Error> {
         let tell = |x: &_, error| self.progress.reach(error, &parameters(x));
-        let told = Told { solver, tell };
+        let told = Observed { solver, tell };
         let result = Executor::new(problem, told)
             .configure(|state| state.param(start).max_iters(self.max_iterations))
             .ctrlc(false)
@@ -243,7 +243,7 @@ impl Run<'_> {
             error: state.get_best_cost(),
             iterations: state.get_iter(),
             evaluations: result.problem.counts.values().sum(),
-            ending: Ending::IterationLimit,
+            termination: Termination::IterationLimit,
         };
         Ok((found, result.solver.solver))
     }
@@ -254,7 +254,7 @@ impl Run<'_> {
 /// A minimiser comes as near to a bound as E can tell, and no nearer: to 1e-13 of E, or where E is
 /// nothing but rounding to 1e-10 of the readings.
 fn onto_bounds(
-    criterion: &Criterion,
+    objective: &Objective,
     free: &[Parameter],
     best: ModelParameters,
 ) -> ModelParameters {
@@ -266,8 +266,8 @@ fn onto_bounds(
             weight.set(&mut bound, 0.0);
             bound
         })
-        .filter(|bound| criterion.error(bound) <= criterion.error(&best) * (1.0 + 1e-13) + 1e-20)
-        .min_by(|a, b| criterion.error(a).total_cmp(&criterion.error(b)))
+        .filter(|bound| objective.error(bound) <= objective.error(&best) * (1.0 + 1e-13) + 1e-20)
+        .min_by(|a, b| objective.error(a).total_cmp(&objective.error(b)))
         .unwrap_or(best)
 }
 
@@ -276,13 +276,13 @@ impl<const P: usize> CostFunction for Problem<'_, P> {
     type Output = f64;
 
     fn cost(&self, param: &SVector<f64, P>) -> Result<f64, Error> {
-        Ok(self.criterion.error(&self.parameters(param)))
+        Ok(self.objective.error(&self.parameters(param)))
     }
 }
 
 impl<const P: usize> LeastSquares<P> for Problem<'_, P> {
     fn normal_equations(&self, param: &SVector<f64, P>) -> NormalEquations<P> {
-        self.criterion
+        self.objective
             .normal_equations(&self.parameters(param), &self.free)
     }
 }
@@ -293,28 +293,28 @@ mod tests {
 
     use super::*;
     use crate::model::Model;
-    use crate::synthetic::scan;
-    use crate::watch::{Phase, Unwatched};
-    use crate::weights::Weights;
+    use crate::objective::weights::Weights;
+    use crate::progress::{NoObserver, Phase};
+    use crate::scan::synthetic::scan;
 
     const METHODS: [Method; 2] = [Method::NelderMead, Method::LevenbergMarquardt];
 
-    fn criterion(truth: Parameters) -> Criterion {
+    fn objective(truth: Parameters) -> Objective {
         let scan = scan(truth, 1.5);
-        Criterion::new(&scan, Family::Paper, 1.5, &Weights::default()).unwrap()
+        Objective::new(&scan, Family::Paper, 1.5, &Weights::default()).unwrap()
     }
 
     /// The minimum over the paper's three parameters from k2 = kD = k1 = 1.
-    fn minimum(criterion: &Criterion, method: Method, max_iterations: u64) -> Minimum {
+    fn minimum(objective: &Objective, method: Method, max_iterations: u64) -> Minimum {
         let one = Parameters::new(1.0, 1.0, 1.0).unwrap();
         let start = ModelParameters::three(one, 1.5);
         minimise(
-            criterion,
+            objective,
             method,
             start,
             Model::Three.free(),
             max_iterations,
-            &Progress::new(&Unwatched, Phase::Stage1),
+            &Progress::new(&NoObserver, Phase::Stage1),
         )
         .unwrap()
     }
@@ -323,7 +323,7 @@ mod tests {
     fn both_methods_find_the_parameters_of_a_noise_free_scan() {
         let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
         for method in METHODS {
-            let found = minimum(&criterion(truth), method, 10_000);
+            let found = minimum(&objective(truth), method, 10_000);
             assert!(
                 (found.parameters.k2 / truth.k2 - 1.0).abs() < 1e-6,
                 "{method}: {found:?}"
@@ -336,9 +336,9 @@ mod tests {
     #[test]
     fn both_methods_end_exactly_on_a_bound() {
         for method in METHODS {
-            let specular = criterion(Parameters::new(0.3, 0.0, 0.2).unwrap());
+            let specular = objective(Parameters::new(0.3, 0.0, 0.2).unwrap());
             assert_eq!(minimum(&specular, method, 10_000).parameters.kd, 0.0);
-            let diffuse = criterion(Parameters::new(0.0, 0.3, 0.2).unwrap());
+            let diffuse = objective(Parameters::new(0.0, 0.3, 0.2).unwrap());
             let found = minimum(&diffuse, method, 10_000);
             assert!(found.parameters.k2 < 1e-9, "{method}: {found:?}");
         }
@@ -354,8 +354,8 @@ mod tests {
         }
         let scan = crate::Measurements::new("test", readings).unwrap();
         for model in Model::ALL {
-            let criterion =
-                Criterion::new(&scan, model.family(), 1.5, &Weights::default()).unwrap();
+            let objective =
+                Objective::new(&scan, model.family(), 1.5, &Weights::default()).unwrap();
             let start = ModelParameters {
                 k2: 0.2,
                 kd: 0.1,
@@ -365,8 +365,8 @@ mod tests {
             };
             let errors = METHODS.map(|method| {
                 let start = model.start(start);
-                let progress = Progress::new(&Unwatched, Phase::Stage1);
-                minimise(&criterion, method, start, model.free(), 10_000, &progress)
+                let progress = Progress::new(&NoObserver, Phase::Stage1);
+                minimise(&objective, method, start, model.free(), 10_000, &progress)
                     .unwrap()
                     .error
             });
@@ -379,12 +379,12 @@ mod tests {
 
     #[test]
     fn the_iteration_limit_is_told() {
-        let criterion = criterion(Parameters::new(0.3, 0.1, 0.2).unwrap());
+        let objective = objective(Parameters::new(0.3, 0.1, 0.2).unwrap());
         for method in METHODS {
-            let found = minimum(&criterion, method, 2);
+            let found = minimum(&objective, method, 2);
             assert_eq!(
-                (found.iterations, found.ending),
-                (2, Ending::IterationLimit)
+                (found.iterations, found.termination),
+                (2, Termination::IterationLimit)
             );
         }
     }

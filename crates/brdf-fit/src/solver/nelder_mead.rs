@@ -13,7 +13,7 @@ use argmin::solver::neldermead::NelderMead as Simplex;
 use brdf_core::ModelParameters;
 use nalgebra::SVector;
 
-use super::{Ending, Problem as Free};
+use super::{Problem as Free, Termination};
 use crate::model::Parameter;
 
 /// A simplex has converged when the standard deviation of E over its corners is below this, as a
@@ -62,7 +62,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
     /// The sizes of a first simplex. A weight that starts at zero must be able to leave it: a step
     /// as for a Lambertian surface.
     pub fn steps(&self) -> SVector<f64, P> {
-        let weight = self.0.criterion.lambertian_weight().abs().max(1e-12);
+        let weight = self.0.objective.lambertian_weight().abs().max(1e-12);
         self.0.vector(|parameter| match parameter {
             Parameter::K2 | Parameter::Kd => 0.5 * weight.sqrt(),
             Parameter::K1 => 1.0,
@@ -94,7 +94,7 @@ impl<const P: usize> CostFunction for Unbounded<'_, P> {
     type Output = f64;
 
     fn cost(&self, x: &SVector<f64, P>) -> Result<f64, Error> {
-        let error = self.0.criterion.error(&self.to_parameters(x));
+        let error = self.0.objective.error(&self.to_parameters(x));
         Ok(if self.is_inside(x) && error.is_finite() {
             error
         } else {
@@ -111,7 +111,7 @@ pub struct NelderMead<const P: usize> {
     steps: SVector<f64, P>,
     /// E where the simplex in use started.
     error_at_start: f64,
-    ending: Option<Ending>,
+    termination: Option<Termination>,
 }
 
 type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
@@ -124,13 +124,13 @@ impl<const P: usize> NelderMead<P> {
             start,
             steps,
             error_at_start: f64::INFINITY,
-            ending: None,
+            termination: None,
         }
     }
 
     /// Why the solver stopped; `None` while it runs, or when its iterations were used up.
-    pub fn ending(&self) -> Option<Ending> {
-        self.ending
+    pub fn termination(&self) -> Option<Termination> {
+        self.termination
     }
 
     /// A new simplex at the start, in the next direction and of the next size.
@@ -182,7 +182,7 @@ impl<'a, const P: usize> Solver<Unbounded<'a, P>, State<P>> for NelderMead<P> {
         }
         let best = state.get_best_cost();
         if best >= self.error_at_start * (1.0 - RESTART_GAIN) {
-            self.ending = Some(Ending::SimplexConverged);
+            self.termination = Some(Termination::SimplexConverged);
             return Ok((state, None));
         }
         self.start = *state.get_best_param().unwrap_or(&self.start);
@@ -192,7 +192,7 @@ impl<'a, const P: usize> Solver<Unbounded<'a, P>, State<P>> for NelderMead<P> {
     }
 
     fn terminate(&mut self, _state: &State<P>) -> TerminationStatus {
-        match self.ending {
+        match self.termination {
             Some(_) => TerminationStatus::Terminated(TerminationReason::SolverConverged),
             None => TerminationStatus::NotTerminated,
         }
@@ -206,9 +206,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::criterion::Criterion;
-    use crate::synthetic::scan;
-    use crate::weights::Weights;
+    use crate::objective::Objective;
+    use crate::objective::weights::Weights;
+    use crate::scan::synthetic::scan;
 
     const START: ModelParameters = ModelParameters {
         k2: 0.1,
@@ -220,8 +220,8 @@ mod tests {
 
     fn with_problem<T>(test: impl FnOnce(Unbounded<'_, 5>) -> T) -> T {
         let scan = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
-        let criterion = Criterion::new(&scan, Family::Power, 1.5, &Weights::default()).unwrap();
-        test(Unbounded::new(Free::new(&criterion, START, Parameter::ALL)))
+        let objective = Objective::new(&scan, Family::Power, 1.5, &Weights::default()).unwrap();
+        test(Unbounded::new(Free::new(&objective, START, Parameter::ALL)))
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The fit: its buttons, its settings, and how far it is.
 
 use brdf_fit::Method;
-use brdf_fit::robust::Loss;
+use brdf_fit::fit::robust::Loss;
 use egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, ProgressBar, Ui};
 
 use crate::intent::{Command, Intent};

@@ -1,8 +1,8 @@
 //! The model and its parameters at the right, and below them what follows and the fit.
 
 use brdf_core::brdf::N_DOMAIN;
+use brdf_fit::format::digits;
 use brdf_fit::model::{Model, Parameter};
-use brdf_fit::words::digits;
 use egui::{
     ComboBox, DragValue, Grid, Id, Panel, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
 };
@@ -158,7 +158,7 @@ fn show_hold(ui: &mut Ui, parameter: Parameter, knobs: &Knobs, intents: &mut Vec
     let words = format!("a fit leaves {parameter} as it is");
     if response.on_hover_text(words).changed() {
         let mut knobs = *knobs;
-        knobs.held[parameter as usize] = held;
+        knobs.fixed[parameter as usize] = held;
         intents.push(Intent::Turn(knobs));
     }
 }

@@ -1,7 +1,7 @@
 //! The results below: the tables of the command line, and what can be plotted of a fit.
 
-use brdf_fit::profile::ProfilePoint;
-use brdf_fit::watch::Phase;
+use brdf_fit::fit::grid_search::ProfilePoint;
+use brdf_fit::progress::Phase;
 use egui::{Color32, Panel, Rangef, RichText, Role, ScrollArea, Ui};
 use egui_plot::{AxisHints, Legend, Line, Plot, PlotPoints, Points, VLine};
 

@@ -1,8 +1,8 @@
 //! The samples at the left, each with its incidences: what is shown, in which colour, and how well
 //! the theory describes it.
 
+use brdf_fit::format::{counted, digits};
 use brdf_fit::plot::mark;
-use brdf_fit::words::{counted, digits};
 use egui::{Color32, ComboBox, Grid, Panel, RichText, Role, ScrollArea, TextStyle, Ui, vec2};
 
 use crate::intent::Intent;

@@ -3,8 +3,8 @@
 
 use std::f64::consts::PI;
 
+use brdf_fit::format::digits;
 use brdf_fit::plot::{Curve, Layout, Reading, Scale, Theory, View, value_range};
-use brdf_fit::words::digits;
 use egui::{PopupAnchor, Pos2, Stroke, Tooltip};
 use egui_plot::{PlotResponse, PlotTransform};
 

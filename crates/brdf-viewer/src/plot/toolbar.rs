@@ -1,8 +1,8 @@
 //! How the data are looked at: the line above the plot.
 
+use brdf_fit::format::counted;
 use brdf_fit::plot::{Layout, Scale};
-use brdf_fit::read::Side;
-use brdf_fit::words::counted;
+use brdf_fit::scan::Side;
 use egui::{Checkbox, ComboBox, Ui};
 
 use crate::intent::{Command, Intent};

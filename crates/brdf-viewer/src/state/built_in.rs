@@ -76,7 +76,7 @@ fn opened(source: String, scans: Vec<Scan>) -> Opened {
 }
 
 fn scans(path: &str, text: &str) -> Result<Opened, ReadError> {
-    let convention = brdf_fit::read::Convention::default();
+    let convention = brdf_fit::scan::Convention::default();
     let all = Measurements::from_reader_with(text.as_bytes(), path, convention)?;
     let scans = all.by_wavelength().into_iter().map(Scan::new);
     Ok(opened(path.to_owned(), scans.collect()))

@@ -71,7 +71,7 @@ impl State {
         };
         match writing {
             Ok(writing) => self.start(Job::Write(path, writing)),
-            Err(words) => self.complain(words),
+            Err(words) => self.print_error(words),
         }
     }
 

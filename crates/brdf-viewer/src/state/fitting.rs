@@ -2,10 +2,10 @@
 
 use std::time::Instant;
 
+use brdf_fit::fit::robust::Loss;
+use brdf_fit::objective::weights::Weights;
+use brdf_fit::progress::{Phase, Step};
 use brdf_fit::report::Depth;
-use brdf_fit::robust::Loss;
-use brdf_fit::watch::{Phase, Step};
-use brdf_fit::weights::Weights;
 use brdf_fit::{FitOptions, Method, RefractiveIndex};
 use serde::{Deserialize, Serialize};
 
@@ -91,7 +91,7 @@ impl Default for FitChoice {
             weights: ReadingWeights::None,
             robust: None,
             energy: false,
-            energy_limit_deg: brdf_fit::energy::USUAL_LIMIT_DEG,
+            energy_limit_deg: brdf_fit::fit::energy::DEFAULT_LIMIT_DEG,
             start: Start::Paper,
             compare: false,
         }
@@ -119,7 +119,7 @@ impl FitChoice {
             model: knobs.model,
             refractive_index: Some(RefractiveIndex::Same(knobs.at.n)),
             weights: self.weights(),
-            held: knobs.held(),
+            fixed: knobs.fixed_parameters(),
             start: (self.start == Start::Sliders).then_some(knobs.at),
             stage1: (stages != Stages::Second).then_some(self.stage1),
             stage1_limit: self.limit_deg.to_radians(),

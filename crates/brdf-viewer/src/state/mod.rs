@@ -17,7 +17,7 @@ mod turning;
 use std::path::PathBuf;
 
 use brdf_fit::plot::View;
-use brdf_fit::read::Convention;
+use brdf_fit::scan::Convention;
 
 use crate::intent::{Export, Intent};
 use crate::job::{Event, Job};
@@ -175,7 +175,7 @@ impl State {
     }
 
     /// Tells the user that something did not work.
-    pub fn complain(&mut self, text: impl Into<String>) {
+    pub fn print_error(&mut self, text: impl Into<String>) {
         self.tell(Severity::Error, text.into());
     }
 
@@ -291,7 +291,7 @@ impl State {
             }
             Event::NotOpened(error) => {
                 self.reading = self.reading.saturating_sub(1);
-                self.complain(error);
+                self.print_error(error);
             }
             Event::Chosen(paths) => self.open(paths),
             Event::ChosenExport(what, path) => self.write(what, path),
@@ -304,7 +304,7 @@ impl State {
             Event::Broken(scan, failure) => self.not_fitted(scan, failure),
             Event::FitsEnded => self.fits_ended(),
             Event::Written(path) => self.status = format!("{} written", path.display()),
-            Event::NotWritten(error) => self.complain(error),
+            Event::NotWritten(error) => self.print_error(error),
         }
     }
 }

@@ -19,7 +19,7 @@ impl State {
     pub(super) fn open_built_in(&mut self, entry: usize) {
         match built_in::open(entry) {
             Some(Ok(opened)) => self.add(opened, 1),
-            Some(Err(error)) => self.complain(error.to_string()),
+            Some(Err(error)) => self.print_error(error.to_string()),
             None => {}
         }
     }

@@ -90,7 +90,7 @@ impl State {
         if let Some(of) = self.scan_mut(scan) {
             of.failure = Some(failure.clone());
         }
-        self.complain(failure);
+        self.print_error(failure);
     }
 
     pub(super) fn fits_ended(&mut self) {

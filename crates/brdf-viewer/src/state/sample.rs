@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use brdf_core::published::PublishedSample;
 use brdf_core::{AnyBrdf, ModelParameters};
-use brdf_fit::model::{Held, Model, Parameter};
+use brdf_fit::model::{FixedParameters, Model, Parameter};
 use brdf_fit::output::resolved;
 use brdf_fit::report::Report;
-use brdf_fit::{FitOptions, Measurements, RefractiveIndex, stages};
+use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
 
 use super::fitting::Point;
 use crate::job::Opened;
@@ -99,19 +99,21 @@ pub struct Knobs {
     /// Its parameters.
     pub at: ModelParameters,
     /// Which parameters a fit holds, in the order of [`Parameter::ALL`].
-    pub held: [bool; 5],
+    pub fixed: [bool; 5],
 }
 
 impl Knobs {
     /// Whether a fit holds a parameter.
     pub fn holds(&self, parameter: Parameter) -> bool {
-        self.held[parameter as usize]
+        self.fixed[parameter as usize]
     }
 
     /// The parameters that a fit holds, with their values: those that the model would fit.
-    pub fn held(&self) -> Held {
+    pub fn fixed_parameters(&self) -> FixedParameters {
         let held = self.model.free().iter().filter(|p| self.holds(**p));
-        held.fold(Held::none(), |held, p| held.with(*p, p.of(&self.at)))
+        held.fold(FixedParameters::none(), |held, p| {
+            held.with(*p, p.of(&self.at))
+        })
     }
 
     /// The BRDF; `None` where a parameter is outside its domain.
@@ -151,7 +153,7 @@ impl Scan {
         let knobs = Knobs {
             model: Model::Three,
             at: ModelParameters::three(row.parameters, row.n),
-            held: [false; 5],
+            fixed: [false; 5],
         };
         let incidences = THEORY_PSI_DEG.map(|psi_deg| (psi_deg.to_radians(), 0));
         Self::with(measurements, &incidences, Vec::new(), knobs)
@@ -212,7 +214,7 @@ impl Scan {
         Knobs {
             model,
             at,
-            held: self.knobs.held,
+            fixed: self.knobs.fixed,
         }
     }
 
@@ -330,19 +332,19 @@ fn first_knobs(measurements: &Measurements) -> Knobs {
         refractive_index: measurements
             .refractive_index
             .is_none()
-            .then_some(RefractiveIndex::Same(brdf_fit::model::USUAL_N)),
+            .then_some(RefractiveIndex::Same(brdf_fit::model::DEFAULT_N)),
         ..FitOptions::default()
     };
-    let at = stages::starting_values(measurements, &options).unwrap_or(ModelParameters {
+    let at = brdf_fit::fit::starting_values(measurements, &options).unwrap_or(ModelParameters {
         k2: 0.0,
         kd: 0.1,
         k1: 0.3,
-        n: brdf_fit::model::USUAL_N,
+        n: brdf_fit::model::DEFAULT_N,
         p: 1.0,
     });
     Knobs {
         model: Model::Three,
         at,
-        held: [false; 5],
+        fixed: [false; 5],
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use brdf_fit::output::write_file;
 use brdf_fit::plot::View;
-use brdf_fit::read::Convention;
+use brdf_fit::scan::Convention;
 use serde::{Deserialize, Serialize};
 
 use super::fitting::FitChoice;

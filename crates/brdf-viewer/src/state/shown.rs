@@ -6,9 +6,9 @@
 use std::collections::HashMap;
 
 use brdf_core::{Family, Geometry, ModelParameters};
-use brdf_fit::criterion::Criterion;
+use brdf_fit::fit::IncidenceError;
+use brdf_fit::objective::Objective;
 use brdf_fit::plot::{Curve, Layout, Quantity, Scale, Selection, View, curves};
-use brdf_fit::stages::IncidenceError;
 
 use super::State;
 use super::fitting::ReadingWeights;
@@ -72,7 +72,7 @@ type CurvesKey = (SelectionKey, Quantity, Knobs, bool);
 struct ShownScan {
     selection: Kept<SelectionKey, Selection>,
     curves: Kept<CurvesKey, Vec<Curve>>,
-    criterion: Kept<(Family, ReadingWeights), Result<Criterion, String>>,
+    objective: Kept<(Family, ReadingWeights), Result<Objective, String>>,
     errors: Kept<(Knobs, ReadingWeights), Result<Errors, String>>,
     reflectance: Kept<(Family, ModelParameters), Reflectances>,
 }
@@ -154,9 +154,8 @@ impl ShownScan {
             let Some(brdf) = scan.knobs.brdf() else {
                 return Vec::new();
             };
-            let band = |uncertainty: &brdf_fit::uncertainty::Uncertainty, at: &Geometry| {
-                uncertainty.band(&brdf, at)
-            };
+            let band = |uncertainty: &brdf_fit::inference::uncertainty::Uncertainty,
+                        at: &Geometry| { uncertainty.band(&brdf, at) };
             let sigma = uncertainty.map(|u| move |at: &Geometry| band(u, at));
             let sigma = sigma
                 .as_ref()
@@ -169,20 +168,20 @@ impl ShownScan {
         &mut self,
         sample: &Sample,
         reading_weights: ReadingWeights,
-        weights: &brdf_fit::weights::Weights,
+        weights: &brdf_fit::objective::weights::Weights,
     ) {
         let scan = sample.scan();
         let (knobs, family) = (scan.knobs, scan.knobs.model.family());
-        let criterion = self.criterion.of((family, reading_weights), |_| {
+        let objective = self.objective.of((family, reading_weights), |_| {
             if scan.readings() == 0 {
                 return Err("no readings".to_owned());
             }
-            Criterion::new(&scan.measurements, family, knobs.at.n, weights)
+            Objective::new(&scan.measurements, family, knobs.at.n, weights)
                 .map_err(|error| error.to_string())
         });
         self.errors.of((knobs, reading_weights), |_| {
-            let criterion = criterion.as_ref().map_err(Clone::clone)?;
-            let (error, incidences) = criterion.error_and_by_incidence(&knobs.at);
+            let objective = objective.as_ref().map_err(Clone::clone)?;
+            let (error, incidences) = objective.error_and_by_incidence(&knobs.at);
             Ok(Errors {
                 e_percent: 100.0 * error,
                 incidences,

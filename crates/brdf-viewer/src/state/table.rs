@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use brdf_fit::uncertainty::Estimate;
-use brdf_fit::words::digits;
+use brdf_fit::format::digits;
+use brdf_fit::inference::uncertainty::Estimate;
 
 use super::sample::Sample;
 use super::{Effect, State};

@@ -7,8 +7,8 @@ use crate::common::{
     NoDialogs, Window, click, click_role, drop_file, drop_path, empty, enter_path, menu,
     open_built_in, open_path, settle, shows, type_number, window_with, with_z307, z307,
 };
-use brdf_fit::read::{Convention, Side};
 use brdf_fit::report::Document;
+use brdf_fit::scan::{Convention, Side};
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::{Export, Intent};
 use brdf_viewer::job::Event;
@@ -345,7 +345,7 @@ fn scans_of_other_formats_and_their_fits_are_opened() {
         // In the format's coordinates azimuth 0 is forward, without a word in the menu.
         let theta = measurements.readings()[0].in_plane_theta().unwrap();
         assert!((theta + 30_f64.to_radians()).abs() < 1e-12);
-        assert_eq!(measurements.format, brdf_fit::read::Format::Astm);
+        assert_eq!(measurements.format, brdf_fit::scan::Format::Astm);
     };
     let mut window = empty();
     open_path(&mut window, &scan);

@@ -7,8 +7,8 @@ use crate::common::{
     type_number, with_z307, z307,
 };
 use brdf_fit::plot::Ground;
+use brdf_fit::progress::Phase;
 use brdf_fit::report::{Depth, Report};
-use brdf_fit::watch::Phase;
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex};
 use brdf_viewer::intent::{Command, Export, Intent};
 use brdf_viewer::state::fitting::{Progress, ReadingWeights, Scope, Stages, Start};
@@ -362,7 +362,7 @@ fn weights_by_sigma_are_those_of_the_library() {
     let e = report(&window).fit.unwrap().e_percent;
     assert_ne!(e, plain.e_percent);
     // And E of the sliders is with the same weights.
-    let words = format!("E = {} %", brdf_fit::words::digits(e));
+    let words = format!("E = {} %", brdf_fit::format::digits(e));
     assert!(window.query_by_label(&words).is_some(), "{words}");
 }
 

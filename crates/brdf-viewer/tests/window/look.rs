@@ -6,7 +6,7 @@ use crate::common::{
     settle, shows, transform_of, window_with, with_z307,
 };
 use brdf_fit::plot::{Ground, Layout, Quantity, Scale};
-use brdf_fit::read::Side;
+use brdf_fit::scan::Side;
 use brdf_viewer::state::saved::Settings;
 use brdf_viewer::theme;
 use egui::accesskit::{Role, Toggled};
@@ -238,7 +238,7 @@ fn the_pointer_reads_out_what_it_is_at() {
     let at = transform.position_from_point(&PlotPoint::new(reading.theta_deg, reading.value));
     window.hover_at(at);
     window.run();
-    let digits = brdf_fit::words::digits;
+    let digits = brdf_fit::format::digits;
     for words in [
         "psi 70°".to_owned(),
         format!("theta {:.2}°", reading.theta_deg),
@@ -523,7 +523,7 @@ fn the_pointer_reads_out_the_theory_between_readings() {
     for words in [
         "psi 30°".to_owned(),
         format!("theta {:.2}°", theory.theta_deg),
-        format!("theory {}", brdf_fit::words::digits(theory.value)),
+        format!("theory {}", brdf_fit::format::digits(theory.value)),
     ] {
         assert!(shows(&window, &words), "{words}");
     }

@@ -69,7 +69,7 @@ fn a_slider_is_dragged_and_everything_follows_in_the_same_frame() {
     assert_eq!(dragged.at.k2, before.0.at.k2);
     assert_ne!(e_percent(&window), before.1);
     check_painted_curves(&window);
-    let words = format!("E = {} %", brdf_fit::words::digits(e_percent(&window)));
+    let words = format!("E = {} %", brdf_fit::format::digits(e_percent(&window)));
     assert!(window.query_by_label(&words).is_some());
     window.drop_at(at(0.9));
     settle(&mut window);

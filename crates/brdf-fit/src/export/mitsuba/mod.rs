@@ -8,7 +8,7 @@
 
 use std::io::{self, Write};
 
-use super::coating::{Coating, Fitted};
+use super::material::{Fitted, Material};
 use super::rgb::COLOURS;
 use super::source::python::drjit;
 use super::source::{Source, check_name};
@@ -20,7 +20,7 @@ const SCENE: &str = include_str!("scene.xml");
 
 /// Writes the plugin.
 pub(super) fn write_plugin(
-    coating: &Coating,
+    coating: &Material,
     options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
@@ -120,7 +120,7 @@ mod tests {
     }
 
     fn plugin(name: &str, file: &str) -> Result<String, ExportError> {
-        let coating = Coating {
+        let coating = Material {
             fits: vec![fitted(file, 0.1)],
         };
         let options = ExportOptions {

@@ -1,10 +1,11 @@
 //! What stands before the rows: keys, and the names of the columns.
 
-use crate::measurement::Metadata;
 use crate::read::angles::AngleUnit;
 use crate::read::text::{self, Field, Quantity, Text, is_angle, micrometres};
-use crate::read::{Convention, ReadError, ReadOptions, Side};
-use crate::refractive_index::RefractiveIndex;
+use crate::read::{ReadError, ReadOptions};
+use crate::scan::Metadata;
+use crate::scan::RefractiveIndex;
+use crate::scan::{Convention, Side};
 
 /// One of the two directions' angles.
 const ANGLES: [&str; 4] = ["theta_i", "phi_i", "theta_s", "phi_s"];

@@ -51,7 +51,7 @@ mod rows;
 
 use super::text::{Text, comment_of};
 use super::{ReadError, ReadOptions};
-use crate::measurement::Measurements;
+use crate::scan::Measurements;
 use header::Header;
 use rows::Rows;
 
@@ -77,7 +77,7 @@ mod tests {
 
     use super::*;
     use crate::Measurement;
-    use crate::read::Side;
+    use crate::scan::Side;
 
     fn read_with(content: &str, options: &ReadOptions) -> Result<Measurements, ReadError> {
         read(Text::new(Path::new("a.astm"), content.as_bytes())?, options)

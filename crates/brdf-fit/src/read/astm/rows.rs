@@ -1,12 +1,13 @@
 //! The rows, and what becomes of them.
 
 use super::header::{Column, Header};
-use crate::measurement::{Measurement, Measurements};
+use crate::read::ReadError;
 use crate::read::angles::{AngleUnit, TwoDirections};
 use crate::read::text::{
     BEYOND_HORIZON, Field, Text, is_angle, is_deviation, is_reading, left_out, words,
 };
-use crate::read::{Convention, Format, ReadError, Side};
+use crate::scan::{Convention, Format, Side};
+use crate::scan::{Measurement, Measurements};
 
 /// The rows as they stand in the file.
 #[derive(Default)]

@@ -1,0 +1,371 @@
+//! Fits that keep energy: no more light leaves the surface than falls on it.
+
+use argmin::core::{CostFunction, Error, Executor, State as _};
+use argmin::solver::neldermead::NelderMead;
+use brdf_core::{AnyBrdf, Family, ModelParameters};
+use nalgebra::DVector;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::fit::FitError;
+use crate::fit::grid_search::{Search, fixed_weights, solve_for};
+use crate::format::in_degrees;
+use crate::model::{Parameter, ReducedModel};
+use crate::objective::{Objective, ProfileSums};
+use crate::progress::{Cancelled, Progress};
+use crate::solver::observed::Observed;
+
+/// Up to this incidence a fit keeps energy when nobody says another angle, in degrees.
+pub const DEFAULT_LIMIT_DEG: f64 = 85.0;
+
+/// Steps of incidence in which the largest reflectance is looked for: it is a smooth function of
+/// the incidence angle.
+const STEPS: u32 = 17;
+
+/// Relative tolerance of the reflectances.
+const TOLERANCE: f64 = 1e-5;
+
+/// Points of the search from which simplices start.
+const STARTS: usize = 6;
+
+/// Relative tolerance of the reflectances by which the points of the search are ranked.
+const ROUGH: f64 = 0.03;
+
+/// The simplex has converged when E differs by less than this fraction of it over its corners.
+const SPREAD: f64 = 1e-12;
+
+/// Simplices one after another, and iterations of each.
+const SIMPLICES: usize = 3;
+const ITERATIONS: u64 = 150;
+
+/// What keeping energy did to a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct EnergyConstraint {
+    /// rho(psi) <= 1 was asked for up to this incidence, in degrees.
+    pub limit_deg: f64,
+    /// The parameters without that.
+    pub free: ModelParameters,
+    /// E without that, in percent.
+    pub free_e_percent: f64,
+    /// Whether the fit was changed by it.
+    pub binding: bool,
+}
+
+/// The lowest E under rho(psi) <= 1 for all psi up to the limit, in radians; `best` is the minimum
+/// without that.
+///
+/// For given k1, n and p the reflectance is k2 s(psi) + kD, so that the condition is the one line
+/// k2 S + kD <= 1 with S the largest s up to the limit, and the best weights under it are known in
+/// closed form. The points of the search are ranked by E with these weights, S being taken at the
+/// limit alone and roughly; simplices go on from the best few, with S in full.
+pub(crate) fn conserve(
+    objective: &Objective,
+    model: ReducedModel,
+    best: &ModelParameters,
+    limit: f64,
+    progress: &Progress<'_>,
+) -> Result<ModelParameters, FitError> {
+    let bounded = Bounded {
+        objective,
+        model,
+        limit,
+        axes: axes(model),
+        fixed: *best,
+        progress,
+    };
+    if bounded.largest_reflectance(best) <= 1.0 {
+        return Ok(*best);
+    }
+    let mut lowest = bounded.best_weights(best);
+    let starts = if bounded.axes.is_empty() {
+        Vec::new()
+    } else {
+        bounded.best_points()?
+    };
+    for start in starts {
+        let found = bounded.descend(&start)?;
+        if found.1 < lowest.1 {
+            lowest = found;
+        }
+    }
+    if lowest.1.is_finite() {
+        Ok(lowest.0)
+    } else {
+        Err(FitError::FixedAboveEnergy(in_degrees(limit)))
+    }
+}
+
+/// The parameters besides the weights.
+fn axes(model: ReducedModel) -> Vec<Parameter> {
+    let weights = [Parameter::K2, Parameter::Kd];
+    let free = model.free().iter().copied();
+    free.filter(|parameter| !weights.contains(parameter))
+        .collect()
+}
+
+/// The largest reflectance s(psi) of the specular part alone with k2 = 1, up to the limit.
+fn largest_specular(family: Family, at: &ModelParameters, limit: f64) -> f64 {
+    (0..=STEPS)
+        .map(|step| limit * f64::from(step) / f64::from(STEPS))
+        .map(|psi| specular(family, at, psi, TOLERANCE))
+        .fold(0.0, f64::max)
+}
+
+/// s(psi), the reflectance of the specular part alone with k2 = 1.
+fn specular(family: Family, at: &ModelParameters, psi: f64, tolerance: f64) -> f64 {
+    let unit = ModelParameters {
+        k2: 1.0,
+        kd: 0.0,
+        ..*at
+    };
+    AnyBrdf::new(family, &unit)
+        .ok()
+        .and_then(|brdf| brdf.hemispherical_reflectance(psi, tolerance).ok())
+        .unwrap_or(f64::INFINITY)
+}
+
+struct Bounded<'a> {
+    objective: &'a Objective,
+    model: ReducedModel,
+    limit: f64,
+    axes: Vec<Parameter>,
+    /// The values of what is not on the axes.
+    fixed: ModelParameters,
+    progress: &'a Progress<'a>,
+}
+
+impl Bounded<'_> {
+    fn largest_reflectance(&self, at: &ModelParameters) -> f64 {
+        let specular = if at.k2 > 0.0 {
+            largest_specular(self.model.family(), at, self.limit)
+        } else {
+            0.0
+        };
+        at.k2 * specular + at.kd
+    }
+
+    /// The best weights under the condition, and E with them: infinite where fixed weights break it.
+    fn best_weights(&self, at: &ModelParameters) -> (ModelParameters, f64) {
+        self.weights_below(at, largest_specular(self.model.family(), at, self.limit))
+    }
+
+    /// [`best_weights`](Self::best_weights), the largest reflectance being known.
+    fn weights_below(&self, at: &ModelParameters, largest: f64) -> (ModelParameters, f64) {
+        let sums = self.objective.profile_sums(at);
+        let Some((k2, kd)) = weights_below(fixed_weights(self.model), &sums, largest) else {
+            return (*at, f64::INFINITY);
+        };
+        let bounded = ModelParameters { k2, kd, ..*at };
+        (bounded, self.objective.error(&bounded))
+    }
+
+    /// The lowest points of the search under the condition, roughly; the lowest first.
+    fn best_points(&self) -> Result<Vec<ModelParameters>, Cancelled> {
+        let search = Search::new(self.objective, self.model, self.progress)?;
+        let ranked = search.whole().ascending();
+        let mut ranked: Vec<(ModelParameters, f64)> = ranked
+            .into_par_iter()
+            .map(|point| {
+                self.progress.pass()?;
+                let at = point.parameters;
+                let largest = specular(self.model.family(), &at, self.limit, ROUGH);
+                Ok(self.weights_below(&at, largest))
+            })
+            .collect::<Result<_, Cancelled>>()?;
+        ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
+        ranked.retain(|(_, error)| error.is_finite());
+        ranked.truncate(STARTS);
+        Ok(ranked.into_iter().map(|(at, _)| at).collect())
+    }
+
+    /// Simplices one after another, until one brings nothing.
+    fn descend(&self, start: &ModelParameters) -> Result<(ModelParameters, f64), Error> {
+        let mut lowest = self.best_weights(start);
+        for _ in 0..SIMPLICES {
+            let next = self.simplex(&lowest.0, lowest.1)?;
+            let gain = lowest.1 - next.1;
+            if gain > 0.0 {
+                lowest = next;
+            }
+            if gain <= 1e-9 * lowest.1 {
+                break;
+            }
+        }
+        Ok(lowest)
+    }
+
+    fn at(&self, x: &DVector<f64>) -> Option<ModelParameters> {
+        let mut at = self.fixed;
+        for (&parameter, &x) in self.axes.iter().zip(x.iter()) {
+            let value = if parameter == Parameter::N {
+                x
+            } else {
+                x.exp()
+            };
+            let (lowest, highest) = parameter.range();
+            if !(lowest..=highest).contains(&value) {
+                return None;
+            }
+            parameter.set(&mut at, value);
+        }
+        Some(at)
+    }
+
+    fn simplex(
+        &self,
+        start: &ModelParameters,
+        error: f64,
+    ) -> Result<(ModelParameters, f64), Error> {
+        let axes = self.axes.iter();
+        let start = DVector::from_iterator(
+            self.axes.len(),
+            axes.map(|&parameter| {
+                let value = parameter.of(start);
+                if parameter == Parameter::N {
+                    value
+                } else {
+                    value.ln()
+                }
+            }),
+        );
+        let corner = |axis: usize| {
+            let mut corner = start.clone();
+            // Towards the middle of the range, so that the corner lies within it.
+            corner[axis] += if self.axes[axis] == Parameter::N && start[axis] > 3.0 {
+                -0.1
+            } else {
+                0.1
+            };
+            corner
+        };
+        let corners = std::iter::once(start.clone()).chain((0..self.axes.len()).map(corner));
+        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(SPREAD * error)?;
+        let tell = |_: &_, _| self.progress.pass();
+        let result = Executor::new(self, Observed { solver, tell })
+            .configure(|state| state.max_iters(ITERATIONS))
+            .ctrlc(false)
+            .run()?;
+        let best = result.state.get_best_param().unwrap_or(&start);
+        let at = self.at(best).unwrap_or(self.fixed);
+        Ok(self.best_weights(&at))
+    }
+}
+
+impl CostFunction for &Bounded<'_> {
+    type Param = DVector<f64>;
+    type Output = f64;
+
+    fn cost(&self, x: &DVector<f64>) -> Result<f64, Error> {
+        let error = self.at(x).map(|at| self.best_weights(&at).1);
+        Ok(error
+            .filter(|error| error.is_finite())
+            .unwrap_or(f64::INFINITY))
+    }
+}
+
+/// The best weights with k2 `largest` + kD <= 1: those without the condition where they keep it,
+/// else the best on the line, since E is convex. `None` where what is fixed breaks the condition.
+fn weights_below(fixed: [Option<f64>; 2], sums: &ProfileSums, largest: f64) -> Option<(f64, f64)> {
+    let (k2, kd, _) = solve_for(fixed, sums);
+    if k2 * largest + kd <= 1.0 {
+        return Some((k2, kd));
+    }
+    match fixed {
+        [Some(_), Some(_)] => None,
+        [Some(k2), None] => {
+            // Nothing leaves by an absent lobe, whatever its shape.
+            let specular = if k2 > 0.0 { k2 * largest } else { 0.0 };
+            (specular <= 1.0).then_some((k2, 1.0 - specular))
+        }
+        [None, Some(kd)] => (kd <= 1.0).then_some(((1.0 - kd) / largest, kd)),
+        [None, None] => {
+            // kD = 1 - k2 S leaves y - a to be described by k2 (u - S a).
+            let &ProfileSums { uu, ua, uy, aa, ay } = sums;
+            let squared = uu - 2.0 * largest * ua + largest * largest * aa;
+            let product = uy - ua - largest * ay + largest * aa;
+            let k2 = (product / squared).clamp(0.0, 1.0 / largest);
+            Some((k2, (1.0 - k2 * largest).max(0.0)))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::published::PUBLISHED;
+
+    use super::*;
+    use crate::model::Model;
+    use crate::scan::synthetic::scan;
+    use crate::{FitOptions, RefractiveIndex, fit};
+
+    fn options(n: f64, limit_deg: Option<f64>, model: Model) -> FitOptions {
+        FitOptions {
+            model,
+            refractive_index: Some(RefractiveIndex::Same(n)),
+            energy_limit: limit_deg.map(f64::to_radians),
+            ..FitOptions::default()
+        }
+    }
+
+    #[test]
+    fn sample_002_can_be_fitted_without_making_light() {
+        let row = PUBLISHED[3];
+        let scan = scan(row.parameters, row.n);
+        let mut errors = Vec::new();
+        for model in [Model::Specular, Model::Three, Model::ThreeN, Model::PowerN] {
+            let free = fit(&scan, &options(row.n, None, model)).unwrap();
+            let bound = fit(&scan, &options(row.n, Some(80.0), model)).unwrap();
+            let energy = bound.energy.unwrap();
+            assert!(energy.binding && energy.free_e_percent == free.e_percent);
+            assert!(bound.e_percent > free.e_percent);
+            let brdf = AnyBrdf::new(model.family(), &bound.at()).unwrap();
+            let reflectance = |psi_deg: f64| {
+                brdf.hemispherical_reflectance(psi_deg.to_radians(), 1e-6)
+                    .unwrap()
+            };
+            let largest = (0..=80)
+                .map(|psi| reflectance(f64::from(psi)))
+                .fold(0.0, f64::max);
+            assert!((largest - 1.0).abs() < 1e-3, "{model}: {largest}");
+            errors.push(bound.e_percent);
+        }
+        // Each contains the one before.
+        assert!(
+            errors.is_sorted_by(|a, b| *b <= a * (1.0 + 1e-6)),
+            "{errors:?}"
+        );
+    }
+
+    /// By brute force over kD and k2 on the line and inside, for many widths.
+    #[test]
+    fn no_other_parameters_that_keep_energy_are_better() {
+        let row = PUBLISHED[3];
+        let scan = scan(row.parameters, row.n);
+        let options = options(row.n, Some(80.0), Model::Three);
+        let bound = fit(&scan, &options).unwrap();
+        let objective = Objective::new(&scan, Family::Paper, row.n, &options.weights).unwrap();
+        for step in 0..40 {
+            let k1 = 0.05 * 1.12_f64.powi(step);
+            let at = ModelParameters { k1, ..bound.at() };
+            let largest = largest_specular(Family::Paper, &at, 80_f64.to_radians());
+            for i in 0..=50 {
+                let k2 = f64::from(i) / 50.0 / largest;
+                for j in 0..=20 {
+                    let kd = (1.0 - k2 * largest) * f64::from(j) / 20.0;
+                    let other = objective.error(&ModelParameters { k2, kd, ..at });
+                    assert!(other >= 0.01 * bound.e_percent * (1.0 - 1e-9));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_fit_that_keeps_energy_is_left_as_it_is() {
+        let row = PUBLISHED[4];
+        let scan = scan(row.parameters, row.n);
+        let free = fit(&scan, &options(row.n, None, Model::Three)).unwrap();
+        let bound = fit(&scan, &options(row.n, Some(60.0), Model::Three)).unwrap();
+        assert_eq!(free.parameters, bound.parameters);
+        assert!(!bound.energy.unwrap().binding);
+    }
+}

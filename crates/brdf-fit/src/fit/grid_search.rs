@@ -1,0 +1,500 @@
+//! The exact minimum over k2 and kD for given other parameters, and the search over those that
+//! checks each fit against the global optimum.
+//!
+//! For a fixed width, index and exponent a model is linear in k2 and kD, so E has one minimum over
+//! k2 >= 0, kD >= 0, which is known in closed form. What remains is a function of k1, and where
+//! they are free of n and p, the profile. Its scalar products are kept for each incidence by
+//! itself: with them the profile of any choice of incidences costs nothing more.
+
+use brdf_core::ModelParameters;
+use serde::{Deserialize, Serialize};
+
+use crate::model::{K1_RANGE, Parameter, ReducedModel};
+use crate::objective::{Objective, ProfileSums};
+use crate::progress::{Cancelled, Progress};
+
+/// Steps of the search, equal in ln k1: 0.25 each. As a function of ln k1 the paper's model has its
+/// nearest singularity at a distance of pi/2 in the complex plane, so that its profile cannot have
+/// features much narrower.
+const STEPS: u32 = 83;
+
+/// Refractive indices of the search: R0 changes most from one to the next at the small ones.
+const INDICES: [f64; 14] = [
+    1.0, 1.05, 1.12, 1.2, 1.3, 1.4, 1.5, 1.65, 1.85, 2.1, 2.5, 3.1, 4.2, 6.0,
+];
+
+/// Exponents of the search, about equal in their logarithm.
+const EXPONENTS: [f64; 12] = [
+    0.1, 0.16, 0.25, 0.4, 0.63, 1.0, 1.6, 2.5, 4.0, 6.3, 10.0, 16.0,
+];
+
+/// A search over more than k1 takes about so many readings at the most; the minimum is found with
+/// all of them.
+const SEARCHED_READINGS: usize = 2048;
+
+/// So many minima of a search are looked at.
+const MOST_MINIMA: usize = 4;
+
+/// The profile at one point: the best weights there, and E with them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ProfilePoint {
+    /// All parameters.
+    pub parameters: ModelParameters,
+    /// E as a fraction (in JSON `e_fraction`).
+    #[serde(rename = "e_fraction")]
+    pub error: f64,
+}
+
+/// E minimised over the weights that a model fits, at the other parameters given.
+pub fn best_weights(
+    objective: &Objective,
+    model: ReducedModel,
+    at: ModelParameters,
+) -> ProfilePoint {
+    let (k2, kd, error) = solve_for(fixed_weights(model), &objective.profile_sums(&at));
+    ProfilePoint {
+        parameters: ModelParameters { k2, kd, ..at },
+        error,
+    }
+}
+
+/// k2 and kD where a model does not fit them.
+pub(crate) fn fixed_weights(model: ReducedModel) -> [Option<f64>; 2] {
+    [Parameter::K2, Parameter::Kd].map(|weight| model.fixed(weight))
+}
+
+/// k2, kD and E of the best weights where some are fixed, the readings being normalised: what a
+/// fixed part leaves of the readings is described by the other.
+pub(crate) fn solve_for(fixed: [Option<f64>; 2], sums: &ProfileSums) -> (f64, f64, f64) {
+    let &ProfileSums { uu, ua, uy, aa, ay } = sums;
+    match fixed {
+        [None, None] => solve(sums),
+        [Some(k2), None] => {
+            let left = ay - k2 * ua;
+            let kd = alone(left, aa);
+            (k2, kd, 1.0 - 2.0 * k2 * uy + k2 * k2 * uu - kd * left)
+        }
+        [None, Some(kd)] => {
+            let left = uy - kd * ua;
+            let k2 = alone(left, uu);
+            (k2, kd, 1.0 - 2.0 * kd * ay + kd * kd * aa - k2 * left)
+        }
+        [Some(k2), Some(kd)] => {
+            let squares = k2 * k2 * uu + 2.0 * k2 * kd * ua + kd * kd * aa;
+            (k2, kd, 1.0 - 2.0 * (k2 * uy + kd * ay) + squares)
+        }
+    }
+}
+
+/// The best weight of one part by itself.
+fn alone(measured: f64, squared: f64) -> f64 {
+    if squared > 0.0 {
+        (measured / squared).max(0.0)
+    } else {
+        0.0
+    }
+}
+
+/// k2, kD and E of the best weights.
+///
+/// Either both are positive and the normal equations hold for both, or one is zero and the other
+/// is the best by itself.
+pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
+    let &ProfileSums { uu, ua, uy, aa, ay } = sums;
+    let determinant = uu * aa - ua * ua;
+    // Collinear to rounding: the two parts cannot be told apart, and one of them does as well.
+    if determinant > 1e-14 * uu * aa {
+        let k2 = (uy * aa - ay * ua) / determinant;
+        let kd = (ay * uu - uy * ua) / determinant;
+        if k2 >= 0.0 && kd >= 0.0 {
+            return (k2, kd, 1.0 - k2 * uy - kd * ay);
+        }
+    }
+    let (specular, diffuse) = (alone(uy, uu), alone(ay, aa));
+    if specular * uy > diffuse * ay {
+        (specular, 0.0, 1.0 - specular * uy)
+    } else {
+        (0.0, diffuse, 1.0 - diffuse * ay)
+    }
+}
+
+/// The scalar products of a search for each of its points and each fold of the incidences.
+#[derive(Debug, Clone)]
+pub(crate) struct Search {
+    /// k2 and kD where they are fixed.
+    weights: [Option<f64>; 2],
+    /// k1, n and p of the axes.
+    axes: [Vec<f64>; 3],
+    /// uu, ua, uy: folds within n within k1 within p.
+    lobe: Vec<[f64; 3]>,
+    /// aa, ay, yy of each fold.
+    fixed: Vec<[f64; 3]>,
+}
+
+/// The profile of a search over some choice of the incidences.
+#[derive(Debug, Clone)]
+pub(crate) struct Profile<'a> {
+    search: &'a Search,
+    /// Weights and E in the order of the search.
+    points: Vec<(f64, f64, f64)>,
+}
+
+impl Search {
+    /// The search for a model over the incidences of a objective; each width is told.
+    pub(crate) fn new(
+        objective: &Objective,
+        model: ReducedModel,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
+        let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
+        if several_axes && objective.len() > SEARCHED_READINGS {
+            // The few readings of E may all be zero: then all of them are taken.
+            if let Ok(thinned) = objective.thinned(SEARCHED_READINGS) {
+                return Self::over(&thinned, model, progress);
+            }
+        }
+        Self::over(objective, model, progress)
+    }
+
+    fn over(
+        objective: &Objective,
+        model: ReducedModel,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
+        let axis = |parameter, all: &[f64]| {
+            if model.frees(parameter) {
+                all.to_vec()
+            } else {
+                vec![model.fixed(parameter).unwrap_or(objective.n())]
+            }
+        };
+        let axes = [
+            axis(Parameter::K1, &widths()),
+            axis(Parameter::N, &INDICES),
+            axis(Parameter::P, &EXPONENTS),
+        ];
+        let fresnel: Vec<Vec<f64>> = axes[1]
+            .iter()
+            .map(|&n| objective.fresnel_column(n))
+            .collect();
+        let (y, a) = objective.fixed_columns();
+        let segments = objective.segments();
+        let folds = objective.folds();
+        let mut lobe = Vec::new();
+        let mut shape = Vec::with_capacity(objective.len());
+        for &p in &axes[2] {
+            for &k1 in &axes[0] {
+                progress.pass()?;
+                objective.shape_column(k1, p, &mut shape);
+                for fresnel in &fresnel {
+                    let start = lobe.len();
+                    lobe.resize(start + folds, [0.0; 3]);
+                    for (i, segment) in segments.iter().enumerate() {
+                        let rows = segment.rows.clone();
+                        let (s, r) = (&shape[rows.clone()], &fresnel[rows.clone()]);
+                        let products = lobe_products(s, r, &a[rows.clone()], &y[rows]);
+                        add(&mut lobe[start + i % folds], &products, 1.0);
+                    }
+                }
+            }
+        }
+        let mut fixed = vec![[0.0; 3]; folds];
+        for (i, segment) in segments.iter().enumerate() {
+            let (y, a) = (&y[segment.rows.clone()], &a[segment.rows.clone()]);
+            let product = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum();
+            let products = [product(a, a), product(a, y), product(y, y)];
+            add(&mut fixed[i % folds], &products, 1.0);
+        }
+        Ok(Self {
+            weights: fixed_weights(model),
+            axes,
+            lobe,
+            fixed,
+        })
+    }
+
+    /// The profile with each fold of the incidences taken so many times.
+    pub(crate) fn profile(&self, times: impl Fn(usize) -> f64) -> Profile<'_> {
+        let times: Vec<f64> = (0..self.fixed.len()).map(times).collect();
+        let sum = |products: &[[f64; 3]]| {
+            let mut sum = [0.0; 3];
+            for (products, times) in products.iter().zip(&times) {
+                add(&mut sum, products, *times);
+            }
+            sum
+        };
+        let [aa, ay, yy] = sum(&self.fixed);
+        let points = self.lobe.chunks(self.fixed.len()).map(|products| {
+            let [uu, ua, uy] = sum(products);
+            // E is a fraction of the readings that are taken.
+            let [uu, ua, uy, aa, ay] = [uu, ua, uy, aa, ay].map(|product| product / yy);
+            solve_for(self.weights, &ProfileSums { uu, ua, uy, aa, ay })
+        });
+        Profile {
+            search: self,
+            points: points.collect(),
+        }
+    }
+
+    /// The profile over all incidences, each once.
+    pub(crate) fn whole(&self) -> Profile<'_> {
+        self.profile(|_| 1.0)
+    }
+}
+
+impl Profile<'_> {
+    /// Indices on the axes of k1, n and p of a point.
+    fn place(&self, i: usize) -> [usize; 3] {
+        let [k1, n, _] = self.search.axes.each_ref().map(Vec::len);
+        [i / n % k1, i % n, i / n / k1]
+    }
+
+    fn index(&self, [k1, n, p]: [usize; 3]) -> usize {
+        let [k1_count, n_count, _] = self.search.axes.each_ref().map(Vec::len);
+        (p * k1_count + k1) * n_count + n
+    }
+
+    fn point(&self, i: usize) -> ProfilePoint {
+        let [k1, n, p] = self.place(i);
+        let (k2, kd, error) = self.points[i];
+        let parameters = ModelParameters {
+            k2,
+            kd,
+            k1: self.search.axes[0][k1],
+            n: self.search.axes[1][n],
+            p: self.search.axes[2][p],
+        };
+        ProfilePoint { parameters, error }
+    }
+
+    /// The places next to one, along each axis.
+    fn neighbours(&self, place: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+        let counts = self.search.axes.each_ref().map(Vec::len);
+        (0..3).flat_map(move |axis| {
+            let moved = move |to: usize| {
+                let mut place = place;
+                place[axis] = to;
+                place
+            };
+            let below = place[axis].checked_sub(1).map(moved);
+            let above = (place[axis] + 1 < counts[axis]).then(|| moved(place[axis] + 1));
+            below.into_iter().chain(above)
+        })
+    }
+
+    /// The lowest point.
+    pub(crate) fn lowest(&self) -> ProfilePoint {
+        let errors = (0..self.points.len()).map(|i| (i, self.points[i].2));
+        let lowest = errors.min_by(|a, b| a.1.total_cmp(&b.1));
+        self.point(lowest.map_or(0, |(i, _)| i))
+    }
+
+    /// All points, the lowest first.
+    pub(crate) fn ascending(&self) -> Vec<ProfilePoint> {
+        let mut points: Vec<ProfilePoint> = (0..self.points.len()).map(|i| self.point(i)).collect();
+        points.sort_by(|a, b| a.error.total_cmp(&b.error));
+        points
+    }
+
+    /// The few lowest of the points that are lower than their neighbours, the lowest first.
+    pub(crate) fn minima(&self) -> Vec<ProfilePoint> {
+        let is_minimum = |i: usize| {
+            let error = self.points[i].2;
+            self.neighbours(self.place(i))
+                .map(|place| self.index(place))
+                .all(|j| error < self.points[j].2 || (error == self.points[j].2 && i < j))
+        };
+        let indices = (0..self.points.len()).filter(|&i| is_minimum(i));
+        let mut minima: Vec<ProfilePoint> = indices.map(|i| self.point(i)).collect();
+        minima.sort_by(|a, b| a.error.total_cmp(&b.error));
+        minima.truncate(MOST_MINIMA);
+        minima
+    }
+
+    /// Whether parameters are no farther from a point of the search than to its neighbours.
+    pub(crate) fn is_next_to(&self, point: &ProfilePoint, at: &ModelParameters) -> bool {
+        let parameters = [Parameter::K1, Parameter::N, Parameter::P];
+        self.search
+            .axes
+            .iter()
+            .zip(parameters)
+            .all(|(axis, parameter)| {
+                let (centre, value) = (parameter.of(&point.parameters), parameter.of(at));
+                let i = axis.iter().position(|x| *x == centre).unwrap_or(0);
+                let (low, high) = (axis[i.saturating_sub(1)], axis[(i + 1).min(axis.len() - 1)]);
+                axis.len() == 1 || (low..=high).contains(&value)
+            })
+    }
+
+    /// The lowest E at each value of k1 or n: `axis` 0 or 1.
+    pub(crate) fn along(&self, parameter: Parameter) -> Vec<ProfilePoint> {
+        let axis = usize::from(parameter == Parameter::N);
+        let mut lowest: Vec<Option<usize>> = vec![None; self.search.axes[axis].len()];
+        for i in 0..self.points.len() {
+            let best = &mut lowest[self.place(i)[axis]];
+            if best.is_none_or(|j| self.points[i].2 < self.points[j].2) {
+                *best = Some(i);
+            }
+        }
+        lowest
+            .into_iter()
+            .flatten()
+            .map(|i| self.point(i))
+            .collect()
+    }
+}
+
+/// Adds products so many times.
+fn add(sum: &mut [f64; 3], products: &[f64; 3], times: f64) {
+    for (sum, product) in sum.iter_mut().zip(products) {
+        *sum += times * product;
+    }
+}
+
+/// The widths of the search.
+fn widths() -> Vec<f64> {
+    let span = (K1_RANGE.1 / K1_RANGE.0).ln();
+    let width = |step| match step {
+        0 => K1_RANGE.0,
+        STEPS => K1_RANGE.1,
+        _ => K1_RANGE.0 * (span * f64::from(step) / f64::from(STEPS)).exp(),
+    };
+    (0..=STEPS).map(width).collect()
+}
+
+/// uu, ua and uy over some rows, u being shape times Fresnel factor; several running sums.
+fn lobe_products(shape: &[f64], fresnel: &[f64], a: &[f64], y: &[f64]) -> [f64; 3] {
+    const LANES: usize = 4;
+    let mut sums = [[0.0; LANES]; 3];
+    let [s, r, a, y] = [shape, fresnel, a, y].map(|column| column.as_chunks::<LANES>());
+    for (((s, r), a), y) in s.0.iter().zip(r.0).zip(a.0).zip(y.0) {
+        for lane in 0..LANES {
+            let u = s[lane] * r[lane];
+            sums[0][lane] += u * u;
+            sums[1][lane] += u * a[lane];
+            sums[2][lane] += u * y[lane];
+        }
+    }
+    for (((s, r), a), y) in s.1.iter().zip(r.1).zip(a.1).zip(y.1) {
+        let u = s * r;
+        sums[0][0] += u * u;
+        sums[1][0] += u * a;
+        sums[2][0] += u * y;
+    }
+    sums.map(|lanes| (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]))
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::{Family, Parameters};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::Measurements;
+    use crate::model::Model;
+    use crate::objective::weights::Weights;
+    use crate::progress::{NoObserver, Phase};
+    use crate::scan::synthetic::scan;
+
+    fn criterion_of(family: Family, k2: f64, kd: f64, k1: f64) -> Objective {
+        let mut readings = scan(Parameters::new(k2, kd, k1).unwrap(), 1.5)
+            .readings()
+            .to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + 0.1 * (i as f64).sin();
+        }
+        let scan = Measurements::new("test", readings).unwrap();
+        Objective::new(&scan, family, 1.5, &Weights::default()).unwrap()
+    }
+
+    fn objective(k2: f64, kd: f64, k1: f64) -> Objective {
+        criterion_of(Family::Paper, k2, kd, k1)
+    }
+
+    fn search_of(objective: &Objective, model: Model) -> Search {
+        let progress = Progress::new(&NoObserver, Phase::GlobalCheck);
+        Search::new(objective, model.into(), &progress).unwrap()
+    }
+
+    fn at(k1: f64) -> ModelParameters {
+        ModelParameters {
+            k2: 0.0,
+            kd: 0.0,
+            k1,
+            n: 1.5,
+            p: 1.0,
+        }
+    }
+
+    #[test]
+    fn the_points_of_a_search_are_the_best_weights_there() {
+        for model in Model::ALL {
+            let objective = criterion_of(model.family(), 0.3, 0.1, 0.2);
+            let search = search_of(&objective, model);
+            let profile = search.whole();
+            for i in (0..profile.points.len()).step_by(37) {
+                let point = profile.point(i);
+                assert_eq!(profile.index(profile.place(i)), i);
+                let error = objective.error(&point.parameters);
+                assert!((error - point.error).abs() < 1e-12, "{model}");
+                let exact = best_weights(&objective, model.into(), point.parameters);
+                assert!((exact.error - point.error).abs() < 1e-12, "{model}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_choice_of_incidences_is_the_profile_of_their_criterion() {
+        let all = objective(0.3, 0.1, 0.2);
+        let search = search_of(&all, Model::Three);
+        let without = search.profile(|i| if i == 2 { 0.0 } else { 1.0 }).lowest();
+        let subset = all.subset(|i| i != 2).unwrap();
+        let expected = search_of(&subset, Model::Three).whole().lowest();
+        assert_eq!(without.parameters.k1, expected.parameters.k1);
+        assert!((without.error / expected.error - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_profile_without_a_minimum_ends_at_the_end_of_its_range() {
+        // A peak between the readings: the narrower, the better.
+        let mut readings = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5)
+            .readings()
+            .to_vec();
+        for reading in &mut readings {
+            reading.brdf = if reading.theta == -reading.psi {
+                1e3
+            } else {
+                0.1
+            };
+        }
+        let scan = Measurements::new("test", readings).unwrap();
+        let objective = Objective::new(&scan, Family::Paper, 1.5, &Weights::default()).unwrap();
+        let search = search_of(&objective, Model::Three);
+        let minima = search.whole().minima();
+        assert_eq!(minima[0].parameters.k1, K1_RANGE.0);
+    }
+
+    proptest! {
+        #[test]
+        fn the_best_weights_are_the_best(
+            k2 in 0.0..1.0, kd in 0.0..1.0, log_k1 in -3.0..0.5_f64, width in -5.0..2.0_f64,
+            by_k2 in -0.5..0.5_f64, by_kd in -0.5..0.5_f64,
+        ) {
+            let objective = objective(k2 + 1e-3, kd, log_k1.exp());
+            for model in [Model::Lambert, Model::Specular, Model::Three] {
+                let best = best_weights(&objective, model.into(), at(width.exp()));
+                let ModelParameters { k2, kd, .. } = best.parameters;
+                prop_assert!(k2 >= 0.0 && kd >= 0.0);
+                prop_assert!((objective.error(&best.parameters) - best.error).abs() < 1e-13);
+                let by_k2 = if model.frees(Parameter::K2) { by_k2 } else { 0.0 };
+                let by_kd = if model.frees(Parameter::Kd) { by_kd } else { 0.0 };
+                let other = ModelParameters {
+                    k2: (k2 + by_k2).max(0.0),
+                    kd: (kd + by_kd).max(0.0),
+                    ..best.parameters
+                };
+                prop_assert!(objective.error(&other) >= best.error - 1e-13);
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! How counts, numbers and angles are written in messages, tables and files.
+//!
+//! ```
+//! use brdf_fit::format::{counted, digits, in_degrees, shortest};
+//!
+//! assert_eq!(counted(3, "reading"), "3 readings");
+//! assert_eq!(digits(0.022_859_766), "0.0228598");
+//! assert_eq!(shortest(1.5), "1.5");
+//! assert_eq!(in_degrees(41.4_f64.to_radians()), 41.4);
+//! ```
+
+/// `1 reading`, `3 readings`.
+pub fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
+}
+
+/// A number as it was written, or six significant digits where it has more.
+pub fn shortest(value: f64) -> String {
+    let plain = value.to_string();
+    let six = digits(value);
+    if plain.len() < six.len() { plain } else { six }
+}
+
+/// Six significant digits, in whichever notation is short.
+pub fn digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let scientific = format!("{value:.5e}");
+    let exponent = scientific
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok());
+    match exponent {
+        Some(exponent @ -4..=5) => {
+            let decimals = usize::try_from(5_i32 - exponent).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
+    }
+}
+
+/// Degrees of an angle in radians, rounded so that what was written in degrees comes back.
+pub fn in_degrees(radians: f64) -> f64 {
+    (radians.to_degrees() * 1e9).round() / 1e9
+}
+
+/// Serialises an angle in radians as degrees: in files, angles are in degrees.
+pub(crate) mod as_degrees {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+    pub(crate) fn serialize<S: Serializer>(radians: &f64, to: S) -> Result<S::Ok, S::Error> {
+        super::in_degrees(*radians).serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+        f64::deserialize(from).map(f64::to_radians)
+    }
+}
+
+/// [`as_degrees`] of an angle that need not be there.
+pub(crate) mod as_optional_degrees {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    #[expect(clippy::ref_option, reason = "serde's signature")]
+    pub(crate) fn serialize<S: Serializer>(
+        radians: &Option<f64>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        radians.map(super::in_degrees).serialize(to)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+        Ok(Option::<f64>::deserialize(from)?.map(f64::to_radians))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_have_their_plural() {
+        assert_eq!(counted(1, "reading"), "1 reading");
+        assert_eq!(counted(0, "reading"), "0 readings");
+    }
+
+    #[test]
+    fn numbers_have_six_significant_digits() {
+        assert_eq!(digits(0.0), "0");
+        assert_eq!(digits(0.022_859_766), "0.0228598");
+        assert_eq!(digits(301.502_668), "301.503");
+        assert_eq!(digits(-2.839_658), "-2.83966");
+        assert_eq!(digits(123_456_789.0), "1.23457e8");
+        assert_eq!(digits(1.5e-9), "1.50000e-9");
+    }
+
+    #[test]
+    fn angles_come_back_as_they_were_written() {
+        for degrees in [0.1_f64, 41.4, 63.256_3, 89.999] {
+            assert_eq!(in_degrees(degrees.to_radians()), degrees);
+        }
+    }
+}

@@ -1,0 +1,493 @@
+//! Parameters that are fixed at a value instead of being fitted.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
+
+use brdf_core::{Family, ModelParameters};
+use serde::{Deserialize, Serialize};
+
+use super::{Model, Parameter};
+use crate::fit::FitError;
+
+/// Which parameters are fixed, and at which value. In JSON a map: `{"k1": 0.2}`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(into = "BTreeMap<Parameter, f64>", from = "BTreeMap<Parameter, f64>")]
+pub struct FixedParameters {
+    /// In the order of [`Parameter::ALL`].
+    values: [Option<f64>; Parameter::ALL.len()],
+}
+
+impl FixedParameters {
+    /// No parameter is fixed.
+    pub fn none() -> Self {
+        Self::default()
+    }
+
+    /// With one parameter more, or fixed at another value.
+    #[must_use]
+    pub fn with(mut self, parameter: Parameter, value: f64) -> Self {
+        self.values[parameter as usize] = Some(value);
+        self
+    }
+
+    /// The value at which a parameter is fixed.
+    pub fn get(&self, parameter: Parameter) -> Option<f64> {
+        self.values[parameter as usize]
+    }
+
+    /// Whether no parameter is fixed.
+    pub fn is_empty(&self) -> bool {
+        self.iter().next().is_none()
+    }
+
+    /// The fixed parameters with their values, in the order of [`Parameter::ALL`].
+    pub fn iter(&self) -> impl Iterator<Item = (Parameter, f64)> {
+        let values = Parameter::ALL.into_iter().zip(self.values);
+        values.filter_map(|(parameter, value)| Some((parameter, value?)))
+    }
+
+    /// Those that a model would otherwise fit.
+    #[must_use]
+    pub fn within(&self, model: Model) -> Self {
+        self.iter()
+            .filter(|(parameter, _)| model.frees(*parameter))
+            .collect()
+    }
+
+    /// That the model has each of them free, and that each value is in its range.
+    pub(crate) fn check(&self, model: Model) -> Result<(), FitError> {
+        for (parameter, value) in self.iter() {
+            if !model.frees(parameter) {
+                return Err(FitError::NotFree { parameter, model });
+            }
+            let (lowest, highest) = parameter.range();
+            if !(value.is_finite() && (lowest..=highest).contains(&value)) {
+                return Err(FitError::FixedOutOfRange { parameter, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl FromIterator<(Parameter, f64)> for FixedParameters {
+    fn from_iter<I: IntoIterator<Item = (Parameter, f64)>>(values: I) -> Self {
+        let add = |fixed: Self, (parameter, value)| fixed.with(parameter, value);
+        values.into_iter().fold(Self::none(), add)
+    }
+}
+
+impl From<BTreeMap<Parameter, f64>> for FixedParameters {
+    fn from(values: BTreeMap<Parameter, f64>) -> Self {
+        values.into_iter().collect()
+    }
+}
+
+impl From<FixedParameters> for BTreeMap<Parameter, f64> {
+    fn from(fixed: FixedParameters) -> Self {
+        fixed.iter().collect()
+    }
+}
+
+/// `k1 = 0.2, kD = 0.05`, or nothing.
+impl fmt::Display for FixedParameters {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = self
+            .iter()
+            .map(|(parameter, value)| format!("{parameter} = {value}"));
+        f.pad(&words.collect::<Vec<_>>().join(", "))
+    }
+}
+
+/// `k1=0.2,kD=0.05`: names as in the tables, in capitals or not.
+impl FromStr for FixedParameters {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut fixed = Self::none();
+        for entry in text.split(',') {
+            let (name, value) = entry.split_once('=').unwrap_or((entry, ""));
+            let parameter = name.trim().parse()?;
+            let value = value.trim().parse().map_err(|_| {
+                format!("\"{entry}\": expected NAME=VALUE with a number, such as k1=0.2")
+            })?;
+            if fixed.get(parameter).is_some() {
+                return Err(format!("\"{text}\": {parameter} is fixed twice"));
+            }
+            fixed = fixed.with(parameter, value);
+        }
+        Ok(fixed)
+    }
+}
+
+/// What is fitted: a model, some of whose parameters are fixed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedModel {
+    model: Model,
+    fixed: FixedParameters,
+    /// The parameters that are fitted, and behind them others.
+    parameters: [Parameter; Parameter::ALL.len()],
+    /// How many of them are fitted.
+    count: usize,
+}
+
+impl ReducedModel {
+    /// A model, and what is fixed of its free parameters; others are not heeded.
+    pub fn new(model: Model, fixed: FixedParameters) -> Self {
+        let mut parameters = Parameter::ALL;
+        let mut count = 0;
+        let fitted = model.free().iter().filter(|&&p| fixed.get(p).is_none());
+        for &parameter in fitted {
+            parameters[count] = parameter;
+            count += 1;
+        }
+        Self {
+            model,
+            fixed: fixed.within(model),
+            parameters,
+            count,
+        }
+    }
+
+    /// The model.
+    pub fn model(self) -> Model {
+        self.model
+    }
+
+    /// The family of the model.
+    pub fn family(self) -> Family {
+        self.model.family()
+    }
+
+    /// The parameters that are fitted, in their order.
+    pub fn free(&self) -> &[Parameter] {
+        &self.parameters[..self.count]
+    }
+
+    /// Whether a parameter is fitted.
+    pub fn frees(&self, parameter: Parameter) -> bool {
+        self.free().contains(&parameter)
+    }
+
+    /// The value that a parameter has in every fit: the one it is fixed at, or the neutral one where
+    /// the model does not have it. `None` where it is fitted, or is an index that others state.
+    pub fn fixed(&self, parameter: Parameter) -> Option<f64> {
+        self.fixed
+            .get(parameter)
+            .or_else(|| self.model.neutral(parameter))
+    }
+
+    /// A start: what is fixed has its value, what is fitted is brought into its range.
+    pub fn start(&self, mut at: ModelParameters) -> ModelParameters {
+        for parameter in Parameter::ALL {
+            let fixed = self.fixed(parameter);
+            if fixed.is_none() && !self.frees(parameter) {
+                continue;
+            }
+            let (lowest, highest) = parameter.range();
+            let value = parameter.of(&at).clamp(lowest, highest);
+            parameter.set(&mut at, fixed.unwrap_or(value));
+        }
+        at
+    }
+}
+
+impl From<Model> for ReducedModel {
+    fn from(model: Model) -> Self {
+        Self::new(model, FixedParameters::none())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::Parameters;
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::fit::grid_search::best_weights;
+    use crate::fit::robust::Loss;
+    use crate::fit::{Fit, FitOptions, fit};
+    use crate::objective::Objective;
+    use crate::report::{Depth, ModelChoice, Report};
+    use crate::scan::synthetic::scan;
+    use crate::solver::Method;
+    use crate::{Measurements, RefractiveIndex};
+
+    fn rippled(ripple: f64) -> Measurements {
+        let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
+        let mut readings = scan(truth, 1.5).readings().to_vec();
+        for (i, reading) in readings.iter_mut().enumerate() {
+            reading.brdf *= 1.0 + ripple * (2.4 * i as f64).sin();
+        }
+        Measurements::new("test", readings).unwrap()
+    }
+
+    fn options(model: Model, fixed: FixedParameters) -> FitOptions {
+        FitOptions {
+            model,
+            fixed,
+            refractive_index: Some(RefractiveIndex::Same(1.5)),
+            ..FitOptions::default()
+        }
+    }
+
+    fn fitted(model: Model, fixed: FixedParameters) -> Fit {
+        fit(&rippled(0.1), &options(model, fixed)).unwrap()
+    }
+
+    fn holding(parameter: Parameter, value: f64) -> FixedParameters {
+        FixedParameters::none().with(parameter, value)
+    }
+
+    #[test]
+    fn words_and_json_go_there_and_back() {
+        let fixed: FixedParameters = "K1=0.2, kd = 5e-2".parse().unwrap();
+        assert_eq!(fixed, holding(Parameter::Kd, 0.05).with(Parameter::K1, 0.2));
+        assert_eq!(fixed.to_string(), "kD = 0.05, k1 = 0.2");
+        let json = serde_json::to_string(&fixed).unwrap();
+        assert_eq!(json, r#"{"kd":0.05,"k1":0.2}"#);
+        assert_eq!(
+            serde_json::from_str::<FixedParameters>(&json).unwrap(),
+            fixed
+        );
+        for (text, message) in [
+            ("k3=1", "is no parameter"),
+            ("k1", "expected NAME=VALUE"),
+            ("k1=wide", "expected NAME=VALUE"),
+            ("k1=1,k1=2", "fixed twice"),
+        ] {
+            let error = text.parse::<FixedParameters>().unwrap_err();
+            assert!(error.contains(message), "{error}");
+        }
+    }
+
+    #[test]
+    fn options_without_held_parameters_are_written_as_before() {
+        let plain = options(Model::Three, FixedParameters::none());
+        let json = serde_json::to_string(&plain).unwrap();
+        assert!(!json.contains("held"));
+        assert_eq!(serde_json::from_str::<FitOptions>(&json).unwrap(), plain);
+        let fixed = options(Model::PowerN, holding(Parameter::P, 0.5));
+        let json = serde_json::to_string(&fixed).unwrap();
+        assert!(json.contains(r#""held":{"p":0.5}"#));
+        assert_eq!(serde_json::from_str::<FitOptions>(&json).unwrap(), fixed);
+        assert_eq!(fixed.free(), Model::ThreeN.free());
+    }
+
+    #[test]
+    fn what_cannot_be_held_is_an_error_of_usage() {
+        for (model, parameter, value, message) in [
+            (
+                Model::Three,
+                Parameter::N,
+                1.6,
+                "n cannot be fixed: model three fits k2, kD, k1",
+            ),
+            (
+                Model::Lambert,
+                Parameter::K1,
+                0.2,
+                "k1 cannot be fixed: model lambert fits kD",
+            ),
+            (
+                Model::Three,
+                Parameter::K1,
+                2e3,
+                "k1 = 2000 cannot be fixed: expected one from",
+            ),
+            (
+                Model::Three,
+                Parameter::K2,
+                -0.1,
+                "expected a number from 0 on",
+            ),
+            (
+                Model::Three,
+                Parameter::Kd,
+                f64::INFINITY,
+                "kD = inf cannot be fixed",
+            ),
+            (
+                Model::Three,
+                Parameter::K1,
+                f64::NAN,
+                "k1 = NaN cannot be fixed",
+            ),
+        ] {
+            let error = fit(&rippled(0.1), &options(model, holding(parameter, value))).unwrap_err();
+            assert!(
+                error.is_usage() && error.to_string().contains(message),
+                "{error}"
+            );
+        }
+    }
+
+    /// With width and index fixed, E has its one minimum in closed form.
+    #[test]
+    fn the_best_weights_at_a_held_width_are_those_of_the_closed_form() {
+        let scan = rippled(0.1);
+        for (method, k1) in [
+            (Method::LevenbergMarquardt, 0.35),
+            (Method::NelderMead, 0.35),
+            (Method::LevenbergMarquardt, 1e-3),
+        ] {
+            let fixed = holding(Parameter::K1, k1);
+            let found = fit(
+                &scan,
+                &FitOptions {
+                    stage1: Some(method),
+                    stage2: Some(method),
+                    ..options(Model::Three, fixed)
+                },
+            )
+            .unwrap();
+            let objective =
+                Objective::new(&scan, Family::Paper, 1.5, &found.options.weights).unwrap();
+            let exact = best_weights(&objective, Model::Three.into(), found.at());
+            assert_eq!(found.parameters.k1, k1);
+            assert!((found.e_percent / (100.0 * exact.error) - 1.0).abs() < 1e-9);
+            assert!((found.parameters.k2 / exact.parameters.k2 - 1.0).abs() < 1e-4);
+            assert!((found.parameters.kd - exact.parameters.kd).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn one_weight_held_leaves_the_best_of_the_other() {
+        let scan = rippled(0.1);
+        let weights = crate::objective::weights::Weights::default();
+        let objective = Objective::new(&scan, Family::Paper, 1.5, &weights).unwrap();
+        for (weight, other) in [
+            (Parameter::K2, Parameter::Kd),
+            (Parameter::Kd, Parameter::K2),
+        ] {
+            let model = ReducedModel::new(Model::Three, holding(weight, 0.15));
+            let at = fitted(Model::Three, FixedParameters::none()).at();
+            let best = best_weights(&objective, model, at);
+            assert_eq!(weight.of(&best.parameters), 0.15);
+            assert!((objective.error(&best.parameters) - best.error).abs() < 1e-13);
+            for factor in [0.99, 1.01] {
+                let mut moved = best.parameters;
+                other.set(&mut moved, factor * other.of(&best.parameters));
+                assert!(objective.error(&moved) > best.error);
+            }
+        }
+    }
+
+    #[test]
+    fn the_search_with_a_held_weight_finds_what_a_hurried_stage_misses() {
+        let fixed = holding(Parameter::K2, 0.3);
+        let start = ModelParameters::three(Parameters::new(1.0, 1.0, 50.0).unwrap(), 1.5);
+        let hurried = FitOptions {
+            start: Some(start),
+            max_iterations: 1,
+            ..options(Model::Three, fixed)
+        };
+        let scan = rippled(0.0);
+        let found = fit(&scan, &hurried).unwrap();
+        assert!(found.global_check.as_ref().unwrap().lower_minimum_taken);
+        assert_eq!(
+            (found.initial.parameters.k2, found.parameters.k2),
+            (0.3, 0.3)
+        );
+        assert!((found.parameters.k1 / 0.2 - 1.0).abs() < 1e-5, "{found:?}");
+        let profile = found.global_check.unwrap().profile;
+        assert!(profile.iter().all(|point| point.parameters.k2 == 0.3));
+    }
+
+    #[test]
+    fn where_all_is_held_e_is_evaluated_and_nothing_is_uncertain() {
+        let fixed = FixedParameters::none()
+            .with(Parameter::K2, 0.25)
+            .with(Parameter::Kd, 0.12)
+            .with(Parameter::K1, 0.3);
+        let scan = rippled(0.1);
+        let (report, error) = Report::of(&scan, &options(Model::Three, fixed), Depth::Assessed);
+        assert_eq!(error, None);
+        let fit = report.fit.clone().unwrap();
+        let objective = Objective::new(&scan, Family::Paper, 1.5, &fit.options.weights).unwrap();
+        let e = 100.0 * objective.error(&fit.at());
+        assert_eq!((fit.e_percent, fit.stage2.unwrap().iterations), (e, 0));
+        assert_eq!((fit.at().k2, fit.at().kd, fit.at().k1), (0.25, 0.12, 0.3));
+        assert_eq!(fit.degrees_of_freedom(), fit.readings);
+        assert_eq!(report.uncertainty, None);
+        assert!(
+            report
+                .text()
+                .contains("fixed: k2 = 0.25, kD = 0.12, k1 = 0.3")
+        );
+    }
+
+    #[test]
+    fn every_part_of_a_report_keeps_what_is_held() {
+        let fixed = holding(Parameter::K1, 0.25).with(Parameter::N, 1.6);
+        let options = FitOptions {
+            robust: Some(Loss::Huber),
+            energy_limit: Some(1.4),
+            ..options(Model::PowerN, fixed)
+        };
+        let (report, error) = Report::of(&rippled(0.1), &options, Depth::Compared);
+        assert_eq!(error, None);
+        let fit = report.fit.unwrap();
+        assert_eq!((fit.at().k1, fit.n), (0.25, 1.6));
+        let free = [Parameter::K2, Parameter::Kd, Parameter::P];
+        let estimated = report.uncertainty.unwrap().estimates;
+        assert!(estimated.iter().map(|e| e.parameter).eq(free));
+        let assessment = report.assessment.unwrap();
+        assert!(assessment.bootstrap.iter().map(|s| s.parameter).eq(free));
+        assert_eq!(assessment.models.len(), Model::ALL.len());
+        for rung in assessment.models {
+            for (parameter, value) in fixed.within(rung.model).iter() {
+                assert_eq!(parameter.of(&rung.parameters), value, "{}", rung.model);
+                assert!(rung.estimates.iter().all(|e| e.parameter != parameter));
+            }
+        }
+    }
+
+    #[test]
+    fn a_chosen_model_holds_what_it_has() {
+        let options = options(Model::Three, holding(Parameter::K1, 0.3));
+        let auto = ModelChoice::Auto;
+        let (report, error) = Report::of_choice(&rippled(0.02), &options, auto, Depth::Fit);
+        assert_eq!(error, None);
+        let fit = report.fit.unwrap();
+        assert!(fit.model() == Model::Lambert || fit.parameters.k1 == 0.3);
+    }
+
+    #[test]
+    fn held_weights_that_make_light_are_an_error_with_energy() {
+        let bright = |fixed| FitOptions {
+            energy_limit: Some(1.4),
+            ..options(Model::Three, fixed)
+        };
+        let error = fit(&rippled(0.1), &bright(holding(Parameter::Kd, 1.2))).unwrap_err();
+        assert!(
+            error.is_usage() && error.to_string().contains("above 1"),
+            "{error}"
+        );
+        for fixed in [holding(Parameter::K2, 0.9), holding(Parameter::Kd, 0.9)] {
+            let found = fit(&rippled(0.1), &bright(fixed)).unwrap();
+            let brdf = brdf_core::AnyBrdf::new(Family::Paper, &found.at()).unwrap();
+            let rho = brdf.hemispherical_reflectance(1.4, 1e-6).unwrap();
+            assert!(rho < 1.0 + 1e-4, "{fixed}: {rho}");
+            assert_eq!(fixed.within(Model::Three), found.options.fixed);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(40))]
+        #[test]
+        fn holding_never_lowers_e_and_at_the_optimum_changes_nothing(
+            which in 0..5_usize, factor in 0.5..2.0_f64, with_n in any::<bool>(),
+        ) {
+            let model = if with_n { Model::PowerN } else { Model::Three };
+            let parameter = model.free()[which % model.free().len()];
+            let free = fitted(model, FixedParameters::none());
+            let at = parameter.of(&free.at());
+            let (lowest, highest) = parameter.range();
+            let other = fitted(model, holding(parameter, (factor * at).clamp(lowest, highest)));
+            prop_assert!(other.e_percent >= free.e_percent * (1.0 - 1e-9));
+            let same = fitted(model, holding(parameter, at));
+            prop_assert!((same.e_percent / free.e_percent - 1.0).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,432 @@
+//! Readings of a goniometer, validated and in the model's convention.
+
+mod convention;
+mod refractive_index;
+mod subsample;
+pub mod synthetic;
+
+pub use convention::{Convention, Format, Side};
+pub use refractive_index::RefractiveIndex;
+pub(crate) use refractive_index::WAVELENGTH_TOLERANCE;
+
+use std::cmp::Ordering;
+use std::collections::BTreeMap;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use brdf_core::{Geometry, GeometryError};
+use serde::{Deserialize, Serialize};
+
+/// One reading. Angles in radians in the model's convention: a positive theta at phi = 0 is the
+/// source's side of the normal.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Measurement {
+    /// Wavelength in micrometres, where the scan states one.
+    pub wavelength_um: Option<f64>,
+    /// Incidence zenith angle psi in [0, pi/2).
+    pub psi: f64,
+    /// View zenith angle theta in (-pi/2, pi/2), signed.
+    pub theta: f64,
+    /// View azimuth phi from the source's azimuth.
+    pub phi: f64,
+    /// Measured f_r in 1/sr; negative values are noise and are kept.
+    pub brdf: f64,
+    /// Standard deviation of the reading in 1/sr, where the scan states one.
+    pub sigma: Option<f64>,
+}
+
+/// Why a reading is refused.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MeasurementError {
+    /// Angles outside the model's domain.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// A wavelength that is not positive.
+    #[error("wavelength {0} um: expected a positive number")]
+    Wavelength(f64),
+    /// A reading that is not a finite number.
+    #[error("BRDF reading {0} 1/sr: expected a finite number")]
+    Brdf(f64),
+    /// A standard deviation that is not positive.
+    #[error("standard deviation {0} 1/sr: expected a positive number")]
+    Sigma(f64),
+}
+
+impl Measurement {
+    /// Checks the domain of every value.
+    pub fn validated(self) -> Result<Self, MeasurementError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        if !(0.0..=FRAC_PI_2).contains(&self.psi) {
+            return Err(GeometryError::Incidence(self.psi).into());
+        }
+        if !(-FRAC_PI_2..=FRAC_PI_2).contains(&self.theta) {
+            return Err(GeometryError::View(self.theta).into());
+        }
+        if !self.phi.is_finite() {
+            return Err(GeometryError::Azimuth(self.phi).into());
+        }
+        if let Some(wavelength) = self.wavelength_um.filter(|&w| !positive(w)) {
+            return Err(MeasurementError::Wavelength(wavelength));
+        }
+        if !self.brdf.is_finite() {
+            return Err(MeasurementError::Brdf(self.brdf));
+        }
+        if let Some(sigma) = self.sigma.filter(|&s| !positive(s)) {
+            return Err(MeasurementError::Sigma(sigma));
+        }
+        Ok(self)
+    }
+
+    /// The geometry of the reading.
+    pub fn geometry(&self) -> Result<Geometry, GeometryError> {
+        Geometry::new(self.psi, self.theta, self.phi)
+    }
+
+    /// The signed view angle in the plane of incidence, in radians; `None` out of the plane, by
+    /// more than 1e-6 rad of azimuth.
+    pub fn in_plane_theta(&self) -> Option<f64> {
+        self.theta_within(0.0, 1e-6)
+    }
+
+    /// The signed view angle in radians in the vertical plane through an azimuth, positive on its
+    /// side; `None` out of that plane, by more than an instrument's 0.05 deg of azimuth.
+    pub fn theta_in_plane(&self, azimuth: f64) -> Option<f64> {
+        self.theta_within(azimuth, SAME_ANGLE)
+    }
+
+    fn theta_within(&self, azimuth: f64, tolerance: f64) -> Option<f64> {
+        let half_turns = (self.phi - azimuth) / PI;
+        let nearest = half_turns.round();
+        if (half_turns - nearest).abs() * PI > tolerance && self.theta != 0.0 {
+            return None;
+        }
+        let other_half = nearest.rem_euclid(2.0) == 1.0;
+        Some(if other_half { -self.theta } else { self.theta })
+    }
+}
+
+/// The angle between two azimuths in radians, from 0 to pi; 0 within the rounding of degrees.
+pub(crate) fn angle_between(a: f64, b: f64) -> f64 {
+    let turns = (a - b) / (2.0 * PI);
+    let angle = (turns - turns.round()).abs() * 2.0 * PI;
+    if angle < 1e-6 { 0.0 } else { angle }
+}
+
+/// Angles within this of each other are one, in radians (0.05 deg): so well an instrument sets them.
+const SAME_ANGLE: f64 = 0.05 * PI / 180.0;
+
+/// The readings of one incidence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Incidence {
+    /// The (smallest) incidence angle psi in radians; the middle of a class of a table.
+    pub psi: f64,
+    /// The indices of its readings, in the order of the file.
+    pub readings: Vec<usize>,
+}
+
+/// What a file says of itself in its `# key: value` lines, in their order. Keys are in lower case.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Metadata(pub Vec<(String, String)>);
+
+impl Metadata {
+    /// The value of a key, the first one where it stands more than once.
+    pub fn get(&self, key: &str) -> Option<&str> {
+        self.0
+            .iter()
+            .find(|(name, _)| name == key)
+            .map(|(_, value)| value.as_str())
+    }
+}
+
+/// The readings of one scan, with what its file says of them.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Measurements {
+    /// Where the readings come from: the path of a file, or what the caller says.
+    pub source: String,
+    /// What the file says of itself.
+    pub metadata: Metadata,
+    /// The refractive index that the file gives.
+    pub refractive_index: Option<RefractiveIndex>,
+    /// Columns of the file that were not used.
+    pub ignored_columns: Vec<String>,
+    /// The angular convention of the file; the readings here are in the model's.
+    pub convention: Convention,
+    /// The format of the file.
+    pub format: Format,
+    /// What was converted on the way from the file to the readings, and what was left out and how
+    /// many of it, one sentence each.
+    pub conversions: Vec<String>,
+    /// The width of classes of incidence angles, in radians, where the readings are of a table whose
+    /// coordinates are others.
+    pub(crate) incidence_class: Option<f64>,
+    pub(crate) readings: Vec<Measurement>,
+}
+
+impl Measurements {
+    /// Measurements from readings that did not come from a file.
+    ///
+    /// Errors: the first reading that is outside the domain.
+    pub fn new(
+        source: impl Into<String>,
+        readings: Vec<Measurement>,
+    ) -> Result<Self, MeasurementError> {
+        let readings = readings
+            .into_iter()
+            .map(Measurement::validated)
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            source: source.into(),
+            readings,
+            ..Self::default()
+        })
+    }
+
+    /// All readings, in the order of the file.
+    pub fn readings(&self) -> &[Measurement] {
+        &self.readings
+    }
+
+    /// Whether the readings are of a table whose coordinates are not those of a goniometer.
+    pub(crate) fn is_table(&self) -> bool {
+        self.incidence_class.is_some()
+    }
+
+    /// The wavelengths in micrometres, ascending; a single `None` where the scan states none.
+    pub fn wavelengths(&self) -> Vec<Option<f64>> {
+        let mut all: Vec<Option<f64>> = Vec::new();
+        for reading in &self.readings {
+            // Files keep a wavelength together: most readings repeat the last one.
+            if all.last() != Some(&reading.wavelength_um) {
+                all.push(reading.wavelength_um);
+            }
+        }
+        all.sort_by(by_value);
+        all.dedup();
+        all
+    }
+
+    /// The readings of each wavelength by themselves, in ascending order of wavelength.
+    pub fn by_wavelength(self) -> Vec<Self> {
+        let wavelengths = self.wavelengths();
+        if wavelengths.len() <= 1 {
+            return vec![self];
+        }
+        let mut split = vec![self.without_readings(); wavelengths.len()];
+        for reading in self.readings {
+            let of = |wavelength: &Option<f64>| by_value(wavelength, &reading.wavelength_um);
+            if let Ok(i) = wavelengths.binary_search_by(of) {
+                split[i].readings.push(reading);
+            }
+        }
+        split
+    }
+
+    /// The incidences in ascending order, each with its readings. Angles that differ by less than
+    /// 0.05 deg, as an instrument sets them, are one incidence; of a table without incidences, those
+    /// of a class of 5 deg are, psi being its middle.
+    pub fn incidences(&self) -> Vec<Incidence> {
+        match self.incidence_class {
+            None => self.set_incidences(),
+            Some(width) => self.classes(width),
+        }
+    }
+
+    fn classes(&self, width: f64) -> Vec<Incidence> {
+        let mut classes: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
+        for (i, reading) in self.readings.iter().enumerate() {
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a small number, not negative"
+            )]
+            let class = (reading.psi / width) as u64;
+            classes.entry(class).or_default().push(i);
+        }
+        let of_class = |(class, readings)| Incidence {
+            psi: (class as f64 + 0.5) * width,
+            readings,
+        };
+        classes.into_iter().map(of_class).collect()
+    }
+
+    fn set_incidences(&self) -> Vec<Incidence> {
+        let mut order: Vec<usize> = (0..self.readings.len()).collect();
+        order.sort_by(|&a, &b| self.readings[a].psi.total_cmp(&self.readings[b].psi));
+        let mut incidences: Vec<Incidence> = Vec::new();
+        for i in order {
+            let psi = self.readings[i].psi;
+            match incidences.last_mut() {
+                Some(last) if psi - last.psi < SAME_ANGLE => last.readings.push(i),
+                _ => incidences.push(Incidence {
+                    psi,
+                    readings: vec![i],
+                }),
+            }
+        }
+        incidences
+    }
+
+    /// The azimuths, in radians from 0 to below pi, of the vertical planes that hold readings, in
+    /// ascending order. Azimuths that differ by less than 0.05 deg, as an instrument sets them, are
+    /// one plane.
+    pub fn planes(&self) -> Vec<f64> {
+        let oblique = self.readings.iter().filter(|reading| reading.theta != 0.0);
+        let mut all: Vec<f64> = oblique
+            .map(|reading| reading.phi.rem_euclid(PI))
+            // Just below pi is the plane of incidence, but for a rounding.
+            .map(|azimuth| {
+                if PI - azimuth < SAME_ANGLE {
+                    0.0
+                } else {
+                    azimuth
+                }
+            })
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|next, last| *next - *last < SAME_ANGLE);
+        if let Some(first) = all.first_mut().filter(|first| **first < SAME_ANGLE) {
+            *first = 0.0;
+        }
+        all
+    }
+
+    /// At most about `limit` of the readings, evenly over each incidence in the order of the file,
+    /// and at least one of each; of a table, [`sampled`](Self::sampled).
+    #[must_use]
+    pub fn thinned(&self, limit: usize) -> Self {
+        if self.is_table() {
+            return self.sampled(limit);
+        }
+        let step = self.readings.len().div_ceil(limit.max(1)).max(1);
+        let incidences = self.incidences();
+        let mut kept: Vec<usize> = incidences
+            .iter()
+            .flat_map(|incidence| incidence.readings.iter().copied().step_by(step))
+            .collect();
+        kept.sort_unstable();
+        self.kept(kept)
+    }
+
+    /// The readings of the incidences up to an angle in radians, that angle included.
+    #[must_use]
+    pub fn up_to(&self, psi: f64) -> Self {
+        let incidences = self.incidences();
+        let chosen = up_to(&incidences, psi).iter();
+        let mut kept: Vec<usize> = chosen.flat_map(|i| i.readings.iter().copied()).collect();
+        kept.sort_unstable();
+        self.kept(kept)
+    }
+
+    /// Some of the readings, by their indices, with all that the file says of them.
+    pub(crate) fn kept(&self, indices: impl IntoIterator<Item = usize>) -> Self {
+        Self {
+            readings: indices.into_iter().map(|i| self.readings[i]).collect(),
+            ..self.without_readings()
+        }
+    }
+
+    fn without_readings(&self) -> Self {
+        Self {
+            source: self.source.clone(),
+            metadata: self.metadata.clone(),
+            refractive_index: self.refractive_index.clone(),
+            ignored_columns: self.ignored_columns.clone(),
+            convention: self.convention,
+            format: self.format,
+            conversions: self.conversions.clone(),
+            incidence_class: self.incidence_class,
+            readings: Vec::new(),
+        }
+    }
+}
+
+/// Of incidences in ascending order those up to an angle in radians, that angle included.
+pub(crate) fn up_to(incidences: &[Incidence], psi: f64) -> &[Incidence] {
+    // A rounding of the angle shall not exclude the limit itself.
+    let limit = psi + 1e-9;
+    &incidences[..incidences.partition_point(|incidence| incidence.psi <= limit)]
+}
+
+#[expect(
+    clippy::ref_option,
+    reason = "the form that sorting and searching ask for"
+)]
+fn by_value(a: &Option<f64>, b: &Option<f64>) -> Ordering {
+    a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reading(wavelength_um: f64, psi: f64, theta: f64, phi: f64) -> Measurement {
+        Measurement {
+            wavelength_um: Some(wavelength_um),
+            psi,
+            theta,
+            phi,
+            brdf: 0.1,
+            sigma: None,
+        }
+    }
+
+    #[test]
+    fn wavelengths_are_split_and_sorted() {
+        let readings = vec![
+            reading(0.85, 0.1, 0.0, 0.0),
+            reading(0.63, 0.3, 0.0, 0.0),
+            reading(0.85, 0.2, 0.0, 0.0),
+        ];
+        let scan = Measurements::new("test", readings).unwrap();
+        assert_eq!(scan.wavelengths(), [Some(0.63), Some(0.85)]);
+        let split = scan.by_wavelength();
+        assert_eq!(split[0].readings().len(), 1);
+        let angles: Vec<f64> = split[1].incidences().iter().map(|i| i.psi).collect();
+        assert_eq!(angles, [0.1, 0.2]);
+    }
+
+    #[test]
+    fn the_plane_of_incidence_is_recognised() {
+        assert_eq!(reading(1.0, 0.1, 0.4, 0.0).in_plane_theta(), Some(0.4));
+        assert_eq!(reading(1.0, 0.1, 0.4, PI).in_plane_theta(), Some(-0.4));
+        assert_eq!(
+            reading(1.0, 0.1, -0.4, 3.0 * PI).in_plane_theta(),
+            Some(0.4)
+        );
+        assert_eq!(reading(1.0, 0.1, 0.4, 1.0).in_plane_theta(), None);
+        assert_eq!(reading(1.0, 0.1, 0.0, 1.0).in_plane_theta(), Some(0.0));
+    }
+
+    #[test]
+    fn planes_are_those_that_hold_readings() {
+        let at = |phi_deg: f64| reading(1.0, 0.1, 0.4, phi_deg.to_radians());
+        let all = [0.0, 180.0, 90.0, 270.01, 359.99, 45.0].map(at).to_vec();
+        let scan = Measurements::new("test", all).unwrap();
+        let degrees: Vec<f64> = scan
+            .planes()
+            .iter()
+            .map(|p| p.to_degrees().round())
+            .collect();
+        assert_eq!(degrees, [0.0, 45.0, 90.0]);
+        assert_eq!(scan.planes()[0], 0.0);
+        let across = at(270.0).theta_in_plane(90_f64.to_radians());
+        assert_eq!(across, Some(-0.4));
+        assert_eq!(at(91.0).theta_in_plane(90_f64.to_radians()), None);
+    }
+
+    #[test]
+    fn values_outside_the_domain_are_named() {
+        let message = |change: &dyn Fn(&mut Measurement)| {
+            let mut bad = reading(1.0, 0.1, 0.2, 0.0);
+            change(&mut bad);
+            Measurements::new("test", vec![bad])
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(message(&|m| m.psi = 1.6).contains("psi = 1.6"));
+        assert!(message(&|m| m.theta = f64::NAN).contains("theta = NaN"));
+        assert!(message(&|m| m.phi = f64::INFINITY).contains("phi = inf"));
+        assert!(message(&|m| m.wavelength_um = Some(-1.0)).contains("wavelength -1"));
+        assert!(message(&|m| m.brdf = f64::NAN).contains("NaN 1/sr"));
+        assert!(message(&|m| m.sigma = Some(0.0)).contains("deviation 0"));
+    }
+}

@@ -1,0 +1,48 @@
+//! The picture of the trade: excess E against time.
+
+use super::{Alternative, FitTrade};
+use crate::plot::{Figure, PlotError};
+use crate::tradeoff::picture::{TradePoint, picture};
+
+impl FitTrade {
+    /// Excess E against time, both logarithmic; the whole fit is the chosen one.
+    pub fn figure(&self) -> Result<Figure, PlotError> {
+        let points: Vec<TradePoint> = self
+            .alternatives
+            .iter()
+            .enumerate()
+            .filter_map(|(i, alternative)| point(i == 0, alternative))
+            .collect();
+        let figure = picture(
+            &points,
+            "time of a fit on one thread / us",
+            "excess E = E over all readings / lowest - 1",
+            &self.title(),
+        )?;
+        let failed = self.alternatives.len() - points.len();
+        Ok(Figure {
+            caption: match failed {
+                0 => figure.caption,
+                _ => format!("{} Not fitted: {failed}.", figure.caption),
+            },
+            ..figure
+        })
+    }
+
+    fn title(&self) -> String {
+        let name = self.sample.as_ref().unwrap_or(&self.source);
+        let wavelength = self.wavelength_um;
+        wavelength.map_or_else(|| name.clone(), |w| format!("{name}, {w} um"))
+    }
+}
+
+fn point(chosen: bool, alternative: &Alternative) -> Option<TradePoint> {
+    let measured = alternative.measured()?;
+    Some(TradePoint {
+        label: alternative.name.clone(),
+        x: 1e6 * measured.seconds,
+        y: measured.excess_e,
+        pareto: measured.pareto,
+        chosen,
+    })
+}

@@ -6,8 +6,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use brdf_core::ModelParameters;
 
-use crate::fit::FitError;
-
 /// The part of a fit that is going on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
@@ -157,14 +155,6 @@ impl Observer for Progress<'_> {
     }
 }
 
-/// What came of a fit within a phase: `None` where it failed. Only that it was cancelled goes on.
-pub(crate) fn unless_cancelled<T>(result: Result<T, FitError>) -> Result<Option<T>, Cancelled> {
-    match result {
-        Err(FitError::Cancelled) => Err(Cancelled),
-        result => Ok(result.ok()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::sync::Mutex;
@@ -173,7 +163,7 @@ mod tests {
 
     use super::*;
     use crate::fit::robust::Loss;
-    use crate::fit::{Fit, FitOptions, Stage, fit, fit_observed};
+    use crate::fit::{Fit, FitError, FitOptions, Stage, fit, fit_observed};
     use crate::report::{Depth, ModelChoice, Report};
     use crate::scan::synthetic::scan;
     use crate::solver::Method;

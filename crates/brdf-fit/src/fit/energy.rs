@@ -7,12 +7,13 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::FitError;
-use crate::fit::grid_search::{Search, fixed_weights, solve_for};
+use super::error::FitError;
+use super::grid_search::{GridSearch, fixed_weights, solve_for};
 use crate::format::in_degrees;
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::{Objective, ProfileSums};
 use crate::progress::{Cancelled, Progress};
+use crate::solver::SolverError;
 use crate::solver::observed::Observed;
 
 /// Up to this incidence a fit keeps energy when nobody says another angle, in degrees.
@@ -58,7 +59,7 @@ pub struct EnergyConstraint {
 /// k2 S + kD <= 1 with S the largest s up to the limit, and the best weights under it are known in
 /// closed form. The points of the search are ranked by E with these weights, S being taken at the
 /// limit alone and roughly; simplices go on from the best few, with S in full.
-pub(crate) fn conserve(
+pub(crate) fn constrain_energy(
     objective: &Objective,
     model: ReducedModel,
     best: &ModelParameters,
@@ -161,7 +162,7 @@ impl Bounded<'_> {
 
     /// The lowest points of the search under the condition, roughly; the lowest first.
     fn best_points(&self) -> Result<Vec<ModelParameters>, Cancelled> {
-        let search = Search::new(self.objective, self.model, self.progress)?;
+        let search = GridSearch::new(self.objective, self.model, self.progress)?;
         let ranked = search.whole().ascending();
         let mut ranked: Vec<(ModelParameters, f64)> = ranked
             .into_par_iter()
@@ -179,7 +180,7 @@ impl Bounded<'_> {
     }
 
     /// Simplices one after another, until one brings nothing.
-    fn descend(&self, start: &ModelParameters) -> Result<(ModelParameters, f64), Error> {
+    fn descend(&self, start: &ModelParameters) -> Result<(ModelParameters, f64), SolverError> {
         let mut lowest = self.best_weights(start);
         for _ in 0..SIMPLICES {
             let next = self.simplex(&lowest.0, lowest.1)?;
@@ -215,7 +216,7 @@ impl Bounded<'_> {
         &self,
         start: &ModelParameters,
         error: f64,
-    ) -> Result<(ModelParameters, f64), Error> {
+    ) -> Result<(ModelParameters, f64), SolverError> {
         let axes = self.axes.iter();
         let start = DVector::from_iterator(
             self.axes.len(),
@@ -239,12 +240,15 @@ impl Bounded<'_> {
             corner
         };
         let corners = std::iter::once(start.clone()).chain((0..self.axes.len()).map(corner));
-        let solver = NelderMead::new(corners.collect()).with_sd_tolerance(SPREAD * error)?;
+        let solver = NelderMead::new(corners.collect())
+            .with_sd_tolerance(SPREAD * error)
+            .map_err(|error| SolverError::from_argmin(&error))?;
         let tell = |_: &_, _| self.progress.pass();
         let result = Executor::new(self, Observed { solver, tell })
             .configure(|state| state.max_iters(ITERATIONS))
             .ctrlc(false)
-            .run()?;
+            .run()
+            .map_err(|error| SolverError::from_argmin(&error))?;
         let best = result.state.get_best_param().unwrap_or(&start);
         let at = self.at(best).unwrap_or(self.fixed);
         Ok(self.best_weights(&at))

@@ -120,7 +120,7 @@ pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
 
 /// The scalar products of a search for each of its points and each fold of the incidences.
 #[derive(Debug, Clone)]
-pub(crate) struct Search {
+pub(crate) struct GridSearch {
     /// k2 and kD where they are fixed.
     weights: [Option<f64>; 2],
     /// k1, n and p of the axes.
@@ -134,12 +134,12 @@ pub(crate) struct Search {
 /// The profile of a search over some choice of the incidences.
 #[derive(Debug, Clone)]
 pub(crate) struct Profile<'a> {
-    search: &'a Search,
+    search: &'a GridSearch,
     /// Weights and E in the order of the search.
     points: Vec<(f64, f64, f64)>,
 }
 
-impl Search {
+impl GridSearch {
     /// The search for a model over the incidences of a objective; each width is told.
     pub(crate) fn new(
         objective: &Objective,
@@ -411,9 +411,9 @@ mod tests {
         criterion_of(Family::Paper, k2, kd, k1)
     }
 
-    fn search_of(objective: &Objective, model: Model) -> Search {
+    fn search_of(objective: &Objective, model: Model) -> GridSearch {
         let progress = Progress::new(&NoObserver, Phase::GlobalCheck);
-        Search::new(objective, model.into(), &progress).unwrap()
+        GridSearch::new(objective, model.into(), &progress).unwrap()
     }
 
     fn at(k1: f64) -> ModelParameters {

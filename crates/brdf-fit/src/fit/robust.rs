@@ -6,10 +6,11 @@ use std::str::FromStr;
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::{FitError, ROUNDING, polish};
+use super::error::FitError;
 use crate::model::Parameter;
-use crate::objective::Objective;
+use crate::objective::{Objective, ROUNDING};
 use crate::progress::Progress;
+use crate::solver::polish;
 
 /// Beyond so many standard deviations Huber's loss grows linearly: 95 % as efficient as least
 /// squares where the errors are normal (Huber 1981).

@@ -8,7 +8,7 @@ use brdf_core::fresnel::Dielectric;
 use brdf_core::{Geometry, Parameters};
 use serde::{Deserialize, Serialize};
 
-use crate::fit::grid_search::{Search, solve};
+use super::grid_search::{GridSearch, solve};
 use crate::model::{K1_RANGE, Model};
 use crate::objective::{Objective, ProfileSums};
 use crate::progress::{Cancelled, Progress};
@@ -144,7 +144,7 @@ pub(crate) fn initial_values(
     objective: &Objective,
     progress: &Progress<'_>,
 ) -> Result<InitialValues, Cancelled> {
-    let search = || Search::new(objective, Model::Three.into(), progress);
+    let search = || GridSearch::new(objective, Model::Three.into(), progress);
     let fresnel = Dielectric::new(n);
     let sections: Vec<Section> = incidences
         .iter()

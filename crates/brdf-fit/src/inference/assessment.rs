@@ -9,13 +9,12 @@ use brdf_core::{AnyBrdf, ModelParameters};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::grid_search::Search;
-use crate::fit::{Fit, FitError, FitOptions, Fitted, fit_scan};
+use crate::fit::{Fit, FitError, FitOptions, fit_scan};
 use crate::inference::cross_validation::{Prediction, Spread, bootstrap, leave_one_out};
 use crate::inference::uncertainty::{Estimate, Uncertainty};
 use crate::inference::warning::NOT_DESCRIBED_PERCENT;
 use crate::model::Model;
-use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress, unless_cancelled};
+use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
 use crate::scan::Measurements;
 
 /// The verdict takes a smaller model when the root mean square error of its prediction is not
@@ -279,7 +278,7 @@ impl Worth {
         progress: &Progress<'_>,
     ) -> Result<Self, FitError> {
         let fitted = fit_scan(scan, options, progress)?;
-        let search = fitted.search(progress)?;
+        let search = fitted.grid_search(progress)?;
         let (model, at) = (options.reduced_model(), fitted.fit.at());
         Ok(Self {
             e_percent: fitted.fit.e_percent,
@@ -332,7 +331,10 @@ pub(crate) fn sufficient_model(
     let options = plain(options);
     let mut rungs = Vec::new();
     for model in Model::HIERARCHY {
-        rungs.extend(unless_cancelled(rung(&scan, model, &options, &progress))?);
+        match rung(&scan, model, &options, &progress) {
+            Err(FitError::Cancelled) => return Err(Cancelled),
+            rung => rungs.extend(rung),
+        }
     }
     Ok(verdict(&rungs)
         .and_then(|verdict| verdict.model)
@@ -350,7 +352,11 @@ fn rung(
         ..options.of_model(model)
     };
     let fitted = fit_scan(scan, &options, progress)?;
-    let (fit, objective, search) = (&fitted.fit, &fitted.objective, fitted.search(progress)?);
+    let (fit, objective, search) = (
+        &fitted.fit,
+        &fitted.objective,
+        fitted.grid_search(progress)?,
+    );
     let (at, reduced_model) = (fit.at(), options.reduced_model());
     let brdf = AnyBrdf::new(model.family(), &at).ok();
     let prediction = leave_one_out(objective, &search, reduced_model, &at, progress)?;
@@ -366,14 +372,6 @@ fn rung(
         estimates: uncertainty.estimates,
         violation_deg: brdf.as_ref().and_then(violation_deg),
     })
-}
-
-impl Fitted {
-    /// The search of the global check, or a new one where that was left out.
-    fn search(&self, progress: &Progress<'_>) -> Result<Search, Cancelled> {
-        let new = || Search::new(&self.objective, self.fit.options.reduced_model(), progress);
-        self.search.clone().map_or_else(new, Ok)
-    }
 }
 
 /// See [`Candidate::aicc_above_best`].

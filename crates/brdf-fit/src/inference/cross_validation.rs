@@ -6,11 +6,11 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::fit::grid_search::Search;
-use crate::fit::polish;
+use crate::fit::grid_search::GridSearch;
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::{IncidenceError, Objective};
-use crate::progress::{Cancelled, Progress, unless_cancelled};
+use crate::progress::{Cancelled, Progress};
+use crate::solver::{polish, unless_cancelled};
 
 /// Resamples of the bootstrap: the ends of its 95 % interval are the 6th and the 195th.
 pub const RESAMPLES: usize = 200;
@@ -44,7 +44,7 @@ impl Prediction {
 /// incidences, and from the fit of all; the lower minimum counts.
 pub(crate) fn leave_one_out(
     objective: &Objective,
-    search: &Search,
+    search: &GridSearch,
     model: ReducedModel,
     at: &ModelParameters,
     progress: &Progress<'_>,
@@ -76,7 +76,7 @@ pub(crate) fn leave_one_out(
 /// The parameters of a fit of all incidences but those of one fold.
 fn fit_of_others(
     objective: &Objective,
-    search: &Search,
+    search: &GridSearch,
     model: ReducedModel,
     at: &ModelParameters,
     left_out: usize,
@@ -124,7 +124,7 @@ pub struct Spread {
 /// there are fewer than 3.
 pub(crate) fn bootstrap(
     objective: &Objective,
-    search: &Search,
+    search: &GridSearch,
     model: ReducedModel,
     at: &ModelParameters,
     progress: &Progress<'_>,
@@ -148,7 +148,7 @@ pub(crate) fn bootstrap(
 
 fn resample(
     objective: &Objective,
-    search: &Search,
+    search: &GridSearch,
     model: ReducedModel,
     at: &ModelParameters,
     times: &[f64],

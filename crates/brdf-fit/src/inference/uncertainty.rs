@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::fit::grid_search::best_weights;
-use crate::fit::{Fit, Fitted, ROUNDING};
+use crate::fit::{Fit, Solution};
 use crate::model::{K1_RANGE, Parameter, ReducedModel};
-use crate::objective::Objective;
-use crate::progress::{Cancelled, Progress, unless_cancelled};
-use crate::solver::{Method, minimise};
+use crate::objective::{Objective, ROUNDING};
+use crate::progress::{Cancelled, Progress};
+use crate::solver::{Method, minimise, unless_cancelled};
 
 /// The end of an interval is known to this fraction of its quantile.
 const END_TOLERANCE: f64 = 1e-3;
@@ -192,7 +192,7 @@ pub struct Uncertainty {
 
 impl Uncertainty {
     /// The uncertainty of a fit; each iteration of a refit is told.
-    pub(crate) fn of_fit(fitted: &Fitted, progress: &Progress<'_>) -> Result<Self, Cancelled> {
+    pub(crate) fn of_fit(fitted: &Solution, progress: &Progress<'_>) -> Result<Self, Cancelled> {
         let fit = &fitted.fit;
         if fit.energy.is_some_and(|energy| energy.binding) {
             return Ok(Self::held_by_energy(fit));

@@ -7,7 +7,7 @@ use brdf_core::AnyBrdf;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::Fit;
-use crate::fit::grid_search::Search;
+use crate::fit::grid_search::GridSearch;
 use crate::format::counted;
 use crate::inference::uncertainty::{Estimate, Knowledge, Noise, Uncertainty};
 use crate::model::{Model, Parameter};
@@ -271,7 +271,7 @@ fn lowest_e_percent(
     let Ok(objective) = Objective::new(scan, family, fit.n, weights) else {
         return Ok(None);
     };
-    let search = Search::new(&objective, Model::Three.into(), progress)?;
+    let search = GridSearch::new(&objective, Model::Three.into(), progress)?;
     Ok(Some(100.0 * search.whole().lowest().error))
 }
 

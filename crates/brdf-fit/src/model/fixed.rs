@@ -8,7 +8,7 @@ use brdf_core::{Family, ModelParameters};
 use serde::{Deserialize, Serialize};
 
 use super::{Model, Parameter};
-use crate::fit::FitError;
+use crate::format::shortest;
 
 /// Which parameters are fixed, and at which value. In JSON a map: `{"k1": 0.2}`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -16,6 +16,39 @@ use crate::fit::FitError;
 pub struct FixedParameters {
     /// In the order of [`Parameter::ALL`].
     values: [Option<f64>; Parameter::ALL.len()],
+}
+
+/// Why a parameter cannot be fixed.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FixedError {
+    /// The model does not fit the parameter.
+    #[error(
+        "{parameter} cannot be fixed: model {model} fits {}",
+        .model.free().iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
+    )]
+    NotFree {
+        /// The parameter.
+        parameter: Parameter,
+        /// The model.
+        model: Model,
+    },
+    /// The value is outside the range of the parameter.
+    #[error("{parameter} = {value} cannot be fixed: expected {}", in_range(*.parameter))]
+    OutOfRange {
+        /// The parameter.
+        parameter: Parameter,
+        /// The value.
+        value: f64,
+    },
+}
+
+/// The values that a parameter can take, in words.
+fn in_range(parameter: Parameter) -> String {
+    match parameter.range() {
+        (lowest, f64::INFINITY) => format!("a number from {lowest} on"),
+        (lowest, highest) => format!("one from {} to {}", shortest(lowest), shortest(highest)),
+    }
 }
 
 impl FixedParameters {
@@ -56,14 +89,14 @@ impl FixedParameters {
     }
 
     /// That the model has each of them free, and that each value is in its range.
-    pub(crate) fn check(&self, model: Model) -> Result<(), FitError> {
+    pub(crate) fn check(&self, model: Model) -> Result<(), FixedError> {
         for (parameter, value) in self.iter() {
             if !model.frees(parameter) {
-                return Err(FitError::NotFree { parameter, model });
+                return Err(FixedError::NotFree { parameter, model });
             }
             let (lowest, highest) = parameter.range();
             if !(value.is_finite() && (lowest..=highest).contains(&value)) {
-                return Err(FitError::FixedOutOfRange { parameter, value });
+                return Err(FixedError::OutOfRange { parameter, value });
             }
         }
         Ok(())

@@ -11,7 +11,7 @@ use brdf_core::facet::P_DOMAIN;
 use brdf_core::{Family, ModelParameters};
 use serde::{Deserialize, Serialize};
 
-pub use fixed::{FixedParameters, ReducedModel};
+pub use fixed::{FixedError, FixedParameters, ReducedModel};
 
 /// The range of k1 in a fit. Far below the resolution of any goniometer at one end; at the other
 /// the facet distribution no longer changes (its limit is sec alpha).

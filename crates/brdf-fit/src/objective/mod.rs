@@ -25,6 +25,9 @@ const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 /// More incidences than this are left out several at a time.
 pub const MOST_FOLDS: usize = 24;
 
+/// E below which only rounding is left, as a fraction.
+pub(crate) const ROUNDING: f64 = 1e-20;
+
 /// So many readings are evaluated together: their columns stay in the nearest cache.
 const BLOCK: usize = 32;
 

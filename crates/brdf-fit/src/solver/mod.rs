@@ -1,8 +1,12 @@
 //! The two minimisers of a stage, as argmin solvers that keep the parameters within their bounds.
 
+mod error;
 pub mod levenberg_marquardt;
 pub mod nelder_mead;
 pub(crate) mod observed;
+
+pub use error::SolverError;
+pub(crate) use error::unless_cancelled;
 
 use std::fmt;
 use std::str::FromStr;
@@ -12,7 +16,6 @@ use brdf_core::ModelParameters;
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::FitError;
 use crate::model::Parameter;
 use crate::objective::{NormalEquations, Objective};
 use crate::progress::Progress;
@@ -116,7 +119,7 @@ pub fn minimise(
     free: &[Parameter],
     max_iterations: u64,
     progress: &Progress<'_>,
-) -> Result<Minimum, FitError> {
+) -> Result<Minimum, SolverError> {
     let run = Run {
         method,
         max_iterations,
@@ -139,12 +142,31 @@ pub fn minimise(
     })
 }
 
+/// Far more iterations than Levenberg-Marquardt takes from a point near a minimum.
+const POLISH_ITERATIONS: u64 = 1000;
+
+/// The minimum next to a point by Levenberg-Marquardt.
+///
+/// # Errors
+///
+/// Those of [`minimise`].
+pub(crate) fn polish(
+    objective: &Objective,
+    from: ModelParameters,
+    free: &[Parameter],
+    progress: &Progress<'_>,
+) -> Result<ModelParameters, SolverError> {
+    let method = Method::LevenbergMarquardt;
+    minimise(objective, method, from, free, POLISH_ITERATIONS, progress)
+        .map(|minimum| minimum.parameters)
+}
+
 /// E where nothing is free.
 fn evaluated(
     objective: &Objective,
     at: ModelParameters,
     progress: &Progress<'_>,
-) -> Result<Minimum, FitError> {
+) -> Result<Minimum, SolverError> {
     let error = objective.error(&at);
     progress.reach(error, &at)?;
     Ok(Minimum {
@@ -193,14 +215,14 @@ impl<'a, const P: usize> Problem<'a, P> {
         at
     }
 
-    fn minimise(self, run: &Run<'_>) -> Result<Minimum, Error> {
+    fn minimise(self, run: &Run<'_>) -> Result<Minimum, SolverError> {
         match run.method {
             Method::NelderMead => self.by_nelder_mead(run),
             Method::LevenbergMarquardt => self.by_levenberg_marquardt(run),
         }
     }
 
-    fn by_levenberg_marquardt(self, run: &Run<'_>) -> Result<Minimum, Error> {
+    fn by_levenberg_marquardt(self, run: &Run<'_>) -> Result<Minimum, SolverError> {
         let start = self.vector(|parameter| parameter.of(&self.start));
         let solver = LevenbergMarquardt::new(
             self.vector(|parameter| parameter.range().0),
@@ -211,7 +233,7 @@ impl<'a, const P: usize> Problem<'a, P> {
         Ok(found)
     }
 
-    fn by_nelder_mead(self, run: &Run<'_>) -> Result<Minimum, Error> {
+    fn by_nelder_mead(self, run: &Run<'_>) -> Result<Minimum, SolverError> {
         let problem = Unbounded::new(self);
         let start = problem.to_coordinates(&self.start);
         let solver = NelderMead::new(start, problem.steps());
@@ -230,13 +252,14 @@ impl Run<'_> {
         solver: S,
         start: SVector<f64, P>,
         parameters: impl Fn(&SVector<f64, P>) -> ModelParameters,
-    ) -> Result<(Minimum, S), Error> {
+    ) -> Result<(Minimum, S), SolverError> {
         let tell = |x: &_, error| self.progress.reach(error, &parameters(x));
-        let told = Observed { solver, tell };
-        let result = Executor::new(problem, told)
+        let observed = Observed { solver, tell };
+        let result = Executor::new(problem, observed)
             .configure(|state| state.param(start).max_iters(self.max_iterations))
             .ctrlc(false)
-            .run()?;
+            .run()
+            .map_err(|error| SolverError::from_argmin(&error))?;
         let state = result.state;
         let found = Minimum {
             parameters: parameters(state.get_best_param().unwrap_or(&start)),

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use brdf_core::{Family, Geometry, ModelParameters};
-use brdf_fit::fit::IncidenceError;
+use brdf_fit::objective::IncidenceError;
 use brdf_fit::objective::Objective;
 use brdf_fit::plot::{Curve, Layout, Quantity, Scale, Selection, View, curves};
 

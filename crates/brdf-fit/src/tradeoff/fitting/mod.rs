@@ -29,10 +29,10 @@ mod trials;
 use brdf_core::ModelParameters;
 use serde::Serialize;
 
-use crate::fit::{Fitted, ROUNDING, fit_scan};
+use crate::fit::{Solution, fit_scan};
 use crate::inference::uncertainty::{Estimate, Uncertainty};
 use crate::model::Parameter;
-use crate::objective::Objective;
+use crate::objective::{Objective, ROUNDING};
 use crate::progress::{NoObserver, Phase, Progress};
 use crate::scan::Measurements;
 use crate::tradeoff::pareto::pareto;
@@ -207,7 +207,7 @@ fn compared(scan: &Measurements, options: &FitOptions) -> Result<FitTrade, FitEr
 }
 
 impl Reference {
-    fn of(fitted: &Fitted) -> Result<Self, FitError> {
+    fn of(fitted: &Solution) -> Result<Self, FitError> {
         let fit = &fitted.fit;
         let progress = Progress::new(&NoObserver, Phase::Uncertainty);
         let uncertainty = Uncertainty::of_fit(fitted, &progress)?;

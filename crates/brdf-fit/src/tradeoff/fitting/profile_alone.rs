@@ -8,7 +8,7 @@ use argmin::core::{CostFunction, Error, Executor, State as _};
 use argmin::solver::brent::BrentOpt;
 use brdf_core::ModelParameters;
 
-use crate::fit::grid_search::{ProfilePoint, Search, best_weights};
+use crate::fit::grid_search::{GridSearch, ProfilePoint, best_weights};
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::Objective;
 use crate::progress::{NoObserver, Phase, Progress};
@@ -56,7 +56,8 @@ pub(super) fn fit_by_profile(
         return Err(FitError::TooFewReadings { count, parameters }.to_string());
     }
     let progress = Progress::new(&NoObserver, Phase::GlobalCheck);
-    let search = Search::new(&objective, model, &progress).map_err(|error| error.to_string())?;
+    let search =
+        GridSearch::new(&objective, model, &progress).map_err(|error| error.to_string())?;
     let profile = search.whole();
     let widths = profile.along(Parameter::K1);
     let (lowest, how) = match depth {

@@ -1,0 +1,482 @@
+//! A scan and the options of its fit, validated once: everything that minimises or evaluates E
+//! starts here.
+
+use std::f64::consts::FRAC_PI_2;
+use std::time::Instant;
+
+use brdf_core::brdf::check_refractive_index;
+use brdf_core::{ModelParameters, Parameters};
+
+use super::energy::{EnergyConstraint, constrain_energy};
+use super::error::FitError;
+use super::global_check::{Checked, check_globally};
+use super::grid_search::GridSearch;
+use super::options::FitOptions;
+use super::result::{FORMAT_VERSION, Fit, OwnAndAll, Stage};
+use super::robust::{RobustFit, fit_robustly};
+use super::start::{InitialValues, initial_values};
+use crate::format::{counted, in_degrees};
+use crate::model::{DEFAULT_N, FixedParameters, Parameter, ReducedModel};
+use crate::objective::Objective;
+use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
+use crate::scan::{Incidence, Measurements, up_to};
+use crate::solver::{Method, minimise};
+
+/// The problem of fitting one model to a scan of one wavelength.
+///
+/// It holds the scan, the refractive index, the model with its fixed parameters, the objective E
+/// over all readings, and the readings of the first stage.
+#[derive(Debug, Clone)]
+pub struct FitProblem<'a> {
+    measurements: &'a Measurements,
+    options: &'a FitOptions,
+    wavelength_um: Option<f64>,
+    n: f64,
+    model: ReducedModel,
+    all: Objective,
+    first_stage: FirstStage,
+}
+
+/// The readings of the first stage.
+#[derive(Debug, Clone)]
+struct FirstStage {
+    /// The incidences that the initial values are taken from.
+    incidences: Vec<Incidence>,
+    /// E over the readings of the stage; `None` where these are all readings.
+    objective: Option<Objective>,
+    /// Why stage 1 is left out although the options ask for it.
+    left_out: Option<String>,
+}
+
+/// A solved problem, with the objects that further inference starts from.
+#[derive(Debug)]
+pub(crate) struct Solution {
+    pub(crate) fit: Fit,
+    /// The objective that was minimised, with the weights of a robust loss.
+    pub(crate) objective: Objective,
+    /// The grid search of the global check; `None` where the check was left out.
+    pub(crate) search: Option<GridSearch>,
+}
+
+impl Solution {
+    /// The grid search of the global check, or a new one where the check was left out.
+    pub(crate) fn grid_search(&self, progress: &Progress<'_>) -> Result<GridSearch, Cancelled> {
+        let new = || GridSearch::new(&self.objective, self.fit.options.reduced_model(), progress);
+        self.search.clone().map_or_else(new, Ok)
+    }
+}
+
+impl<'a> FitProblem<'a> {
+    /// Validates a scan and the options, and builds the objective.
+    ///
+    /// A problem with too few readings for a fit is valid: E can be evaluated, and
+    /// [`solve`](Self::solve) returns the error.
+    ///
+    /// # Errors
+    ///
+    /// The scan has several wavelengths or no reading; no refractive index is known; an option is
+    /// outside its domain; or E is not defined for these readings and weights.
+    pub fn new(measurements: &'a Measurements, options: &'a FitOptions) -> Result<Self, FitError> {
+        if let Some(limit) = options.energy_limit {
+            check_energy_limit(limit)?;
+        }
+        let wavelength_um = single_wavelength(measurements)?;
+        options.fixed.check(options.model)?;
+        let model = options.reduced_model();
+        if measurements.readings().is_empty() {
+            return Err(too_few(0, model));
+        }
+        let n = refractive_index(measurements, options, wavelength_um)?;
+        // A robust loss weights each reading by itself.
+        let build = match options.robust {
+            None => Objective::condensed,
+            Some(_) => Objective::new,
+        };
+        let all = build(measurements, model.family(), n, &options.weights)?;
+        let first_stage = FirstStage::choose(&all, measurements.incidences(), options);
+        Ok(Self {
+            measurements,
+            options,
+            wavelength_um,
+            n,
+            model,
+            all,
+            first_stage,
+        })
+    }
+
+    /// The refractive index: as stated, or where its fit starts.
+    pub fn n(&self) -> f64 {
+        self.n
+    }
+
+    /// The model with its fixed parameters.
+    pub fn model(&self) -> ReducedModel {
+        self.model
+    }
+
+    /// The objective over the readings that the fit is of: all, or those of stage 1 where it is
+    /// alone.
+    pub fn objective(&self) -> &Objective {
+        match self.options.stage2 {
+            Some(_) => &self.all,
+            None => self.first_objective(),
+        }
+    }
+
+    /// [`objective`](Self::objective), by value.
+    pub fn into_objective(self) -> Objective {
+        match (self.options.stage2, self.first_stage.objective) {
+            (None, Some(own)) => own,
+            _ => self.all,
+        }
+    }
+
+    /// E of eq. (5) as a fraction, over the readings that the fit is of.
+    pub fn error_at(&self, parameters: &ModelParameters) -> f64 {
+        self.objective().error(parameters)
+    }
+
+    /// Where the first stage starts: the paper's initial values (section 3 of Li, Yan and Wu 2002),
+    /// or the start that the options give, within the ranges of the parameters.
+    pub fn start(&self) -> ModelParameters {
+        let progress = Progress::new(&NoObserver, Phase::Stage1);
+        match self.starting_point(&progress) {
+            Ok((_, start)) => start,
+            Err(Cancelled) => unreachable!("NoObserver never cancels"),
+        }
+    }
+
+    /// Fits the model: stage 1 over the incidences up to the limit, stage 2 over all (or one of the
+    /// stages alone), the check against the global optimum, and the robust loss and the energy
+    /// constraint where the options ask for them.
+    ///
+    /// Each iteration is reported to `observer`, which may cancel the fit. The result is the same in
+    /// every run, except for the times.
+    ///
+    /// # Errors
+    ///
+    /// No stage is asked for, too few readings influence the fit, all readings have one value, the
+    /// constraints contradict each other, a minimiser fails, or the observer cancels.
+    pub fn solve(&self, observer: &dyn Observer) -> Result<Fit, FitError> {
+        self.run(observer).map(|run| run.fit)
+    }
+
+    /// [`solve`](Self::solve), with the objects that further inference starts from.
+    pub(crate) fn into_solution(self, observer: &dyn Observer) -> Result<Solution, FitError> {
+        let Run {
+            fit,
+            weighted,
+            search,
+        } = self.run(observer)?;
+        Ok(Solution {
+            fit,
+            objective: weighted.unwrap_or_else(|| self.into_objective()),
+            search,
+        })
+    }
+
+    fn run(&self, observer: &dyn Observer) -> Result<Run, FitError> {
+        let started = Instant::now();
+        self.check_solvable()?;
+        let options = self.options;
+        let (own, fitted) = (self.first_objective(), self.objective());
+        let first_method = options
+            .stage1
+            .filter(|_| self.first_stage.left_out.is_none());
+        let first_phase = first_method.map_or(Phase::Stage2, |_| Phase::Stage1);
+        let (initial, start) = self.starting_point(&Progress::before(observer, first_phase))?;
+
+        let stage1 = first_method
+            .map(|method| self.run_stage(method, own, start, Phase::Stage1, observer))
+            .transpose()?;
+        let stage2_start = stage1.map_or(start, |stage| stage.parameters);
+        let stage2 = options
+            .stage2
+            .map(|method| self.run_stage(method, &self.all, stage2_start, Phase::Stage2, observer))
+            .transpose()?;
+        let last = stage2.or(stage1).ok_or(FitError::NoStage)?;
+        let checked = if options.global_check {
+            check_globally(fitted, &last, self.model, observer)?
+        } else {
+            Checked::skipped(&last)
+        };
+        let refined = self.refine(checked.parameters, observer)?;
+        let parameters = refined.parameters;
+
+        let fit = Fit {
+            format_version: FORMAT_VERSION,
+            wavelength_um: self.wavelength_um,
+            n: parameters.n,
+            p: parameters.p,
+            options: options.clone(),
+            readings: fitted.count(),
+            zero_weight: fitted.zero_weight(),
+            parameters: parameters.parameters(),
+            e_percent: 100.0 * fitted.error(&parameters),
+            incidences: fitted.by_incidence(&parameters),
+            initial_e_percent: self.own_and_all(own, &start),
+            initial,
+            stage1,
+            stage1_left_out: self.first_stage.left_out.clone(),
+            stage2,
+            global_check: checked.report,
+            robust: refined.robust,
+            energy: refined.energy,
+            seconds: started.elapsed().as_secs_f64(),
+        };
+        Ok(Run {
+            fit,
+            weighted: refined.weighted,
+            search: checked.search,
+        })
+    }
+
+    /// E over the readings of the first stage.
+    fn first_objective(&self) -> &Objective {
+        self.first_stage.objective.as_ref().unwrap_or(&self.all)
+    }
+
+    /// Checks that the readings suffice for the stages that the options ask for.
+    fn check_solvable(&self) -> Result<(), FitError> {
+        if self.options.stage1.or(self.options.stage2).is_none() {
+            return Err(FitError::NoStage);
+        }
+        self.check_readings()?;
+        if let (None, Some(reason)) = (self.options.stage2, &self.first_stage.left_out) {
+            return Err(FitError::Stage1Alone(reason.clone()));
+        }
+        self.check_count()
+    }
+
+    /// Checks that more readings influence E than parameters are free.
+    pub(crate) fn check_count(&self) -> Result<(), FitError> {
+        let fitted = self.objective();
+        if fitted.suffices_for(self.model.free()) {
+            return Ok(());
+        }
+        Err(too_few(fitted.count() - fitted.zero_weight(), self.model))
+    }
+
+    fn check_readings(&self) -> Result<(), FitError> {
+        let readings = self.measurements.readings();
+        let free = self.model.free();
+        if readings.len() <= free.len() {
+            return Err(too_few(readings.len(), self.model));
+        }
+        let value = readings[0].brdf;
+        // Equal readings determine kD alone.
+        let undetermined = free != [Parameter::Kd];
+        if undetermined && value != 0.0 && readings.iter().all(|reading| reading.brdf == value) {
+            return Err(FitError::AllEqual {
+                count: readings.len(),
+                value,
+            });
+        }
+        Ok(())
+    }
+
+    /// The initial values, and the start of the first stage: the initial values completed by the
+    /// further parameters of the model.
+    fn starting_point(
+        &self,
+        progress: &Progress<'_>,
+    ) -> Result<(InitialValues, ModelParameters), Cancelled> {
+        let fixed = &self.options.fixed;
+        let Some(given) = self.options.start else {
+            let mut initial = initial_values(
+                self.measurements.readings(),
+                &self.first_stage.incidences,
+                self.n,
+                self.first_objective(),
+                progress,
+            )?;
+            initial.parameters = with_fixed(fixed, initial.parameters);
+            let start = ModelParameters::three(initial.parameters, self.n);
+            return Ok((initial, self.model.start(start)));
+        };
+        let initial = InitialValues {
+            parameters: with_fixed(fixed, given.parameters()),
+            weights: None,
+            width: None,
+        };
+        let n = if self.model.frees(Parameter::N) {
+            given.n
+        } else {
+            self.n
+        };
+        Ok((initial, self.model.start(ModelParameters { n, ..given })))
+    }
+
+    fn run_stage(
+        &self,
+        method: Method,
+        own: &Objective,
+        start: ModelParameters,
+        phase: Phase,
+        observer: &dyn Observer,
+    ) -> Result<Stage, FitError> {
+        let started = Instant::now();
+        let progress = Progress::new(observer, phase);
+        let most = self.options.max_iterations;
+        let minimum = minimise(own, method, start, self.model.free(), most, &progress)?;
+        Ok(Stage {
+            method,
+            parameters: minimum.parameters,
+            e_percent: self.own_and_all(own, &minimum.parameters),
+            readings: own.count(),
+            iterations: minimum.iterations,
+            evaluations: minimum.evaluations,
+            seconds: started.elapsed().as_secs_f64(),
+            termination: minimum.termination,
+        })
+    }
+
+    fn own_and_all(&self, own: &Objective, parameters: &ModelParameters) -> OwnAndAll {
+        OwnAndAll {
+            own: 100.0 * own.error(parameters),
+            all: 100.0 * self.all.error(parameters),
+        }
+    }
+
+    /// What follows the paper's two stages where the options ask for it.
+    fn refine(
+        &self,
+        parameters: ModelParameters,
+        observer: &dyn Observer,
+    ) -> Result<Refined, FitError> {
+        let mut refined = Refined {
+            parameters,
+            weighted: None,
+            robust: None,
+            energy: None,
+        };
+        if let Some(loss) = self.options.robust {
+            let progress = Progress::begin(observer, Phase::Robust)?;
+            let (at, weighted, robust) = fit_robustly(
+                self.objective(),
+                loss,
+                parameters,
+                self.model.free(),
+                &progress,
+            )?;
+            (refined.parameters, refined.weighted, refined.robust) =
+                (at, Some(weighted), Some(robust));
+        }
+        if let Some(limit) = self.options.energy_limit {
+            let objective = refined.weighted.as_ref().unwrap_or(self.objective());
+            let free = refined.parameters;
+            let progress = Progress::begin(observer, Phase::Energy)?;
+            refined.parameters = constrain_energy(objective, self.model, &free, limit, &progress)?;
+            refined.energy = Some(EnergyConstraint {
+                limit_deg: in_degrees(limit),
+                free,
+                free_e_percent: 100.0 * self.objective().error(&free),
+                binding: refined.parameters != free,
+            });
+        }
+        Ok(refined)
+    }
+}
+
+/// A fit with the objects that it was made with.
+struct Run {
+    fit: Fit,
+    /// The objective with the weights of a robust loss.
+    weighted: Option<Objective>,
+    search: Option<GridSearch>,
+}
+
+/// The result of the robust loss and the energy constraint.
+struct Refined {
+    parameters: ModelParameters,
+    /// The objective with the weights of a robust loss.
+    weighted: Option<Objective>,
+    robust: Option<RobustFit>,
+    energy: Option<EnergyConstraint>,
+}
+
+impl FirstStage {
+    fn choose(all: &Objective, incidences: Vec<Incidence>, options: &FitOptions) -> Self {
+        let chosen = up_to(&incidences, options.stage1_limit);
+        let count = chosen.len();
+        let readings: usize = chosen
+            .iter()
+            .map(|incidence| incidence.readings.len())
+            .sum();
+        let (objective, left_out) = if options.stage1.is_none() || readings == all.count() {
+            (None, None)
+        } else if readings <= options.reduced_model().free().len() {
+            let limit_deg = in_degrees(options.stage1_limit);
+            let readings = counted(readings, "reading");
+            (None, Some(format!("{readings} up to {limit_deg} deg")))
+        } else {
+            match all.subset(|i| i < count) {
+                Ok(objective) => (Some(objective), None),
+                Err(error) => (None, Some(error.to_string())),
+            }
+        };
+        let mut incidences = incidences;
+        if objective.is_some() {
+            incidences.truncate(count);
+        }
+        Self {
+            incidences,
+            objective,
+            left_out,
+        }
+    }
+}
+
+/// The weights and the width, with the values of those that are fixed.
+fn with_fixed(fixed: &FixedParameters, at: Parameters) -> Parameters {
+    Parameters {
+        k2: fixed.get(Parameter::K2).unwrap_or(at.k2),
+        kd: fixed.get(Parameter::Kd).unwrap_or(at.kd),
+        k1: fixed.get(Parameter::K1).unwrap_or(at.k1),
+    }
+}
+
+/// The refractive index: fixed, stated by the options, or stated by the measurements; the default
+/// where it is only a start, or where nothing depends on it.
+fn refractive_index(
+    measurements: &Measurements,
+    options: &FitOptions,
+    wavelength_um: Option<f64>,
+) -> Result<f64, FitError> {
+    let stated = options.fixed.get(Parameter::N).or_else(|| {
+        let index = options.refractive_index.as_ref();
+        index
+            .or(measurements.refractive_index.as_ref())
+            .and_then(|index| index.at(wavelength_um))
+    });
+    let needed = !options.model.frees(Parameter::N) && options.model.frees(Parameter::K2);
+    let default = (!needed).then_some(DEFAULT_N);
+    let n = stated
+        .or(default)
+        .ok_or(FitError::NoRefractiveIndex(wavelength_um))?;
+    Ok(check_refractive_index(n)?)
+}
+
+fn check_energy_limit(limit: f64) -> Result<(), FitError> {
+    if (0.0..FRAC_PI_2).contains(&limit) {
+        Ok(())
+    } else {
+        Err(FitError::EnergyLimit(in_degrees(limit)))
+    }
+}
+
+fn too_few(count: usize, model: ReducedModel) -> FitError {
+    FitError::TooFewReadings {
+        count,
+        parameters: model.free().len(),
+    }
+}
+
+fn single_wavelength(measurements: &Measurements) -> Result<Option<f64>, FitError> {
+    match measurements.wavelengths().as_slice() {
+        [] => Ok(None),
+        [wavelength] => Ok(*wavelength),
+        several => Err(FitError::SeveralWavelengths(several.len())),
+    }
+}

@@ -13,18 +13,21 @@
 //! all scalar products of columns are the same, but for roundings. A MERL table, 180 readings of
 //! which have one alpha and one gamma, comes down to an eighth.
 
-use brdf_core::{Geometry, GeometryError};
+use brdf_core::shadowing::{Shadowing as _, VGroove};
+use brdf_core::{Family, Geometry, GeometryError};
 use rayon::prelude::*;
 
-use super::{Angles, Objective, Segment};
-use crate::scan::{Incidence, Measurement};
+use super::error::ObjectiveError;
+use super::rows::{Angles, Objective, Segment};
+use super::weights::Weights;
+use crate::scan::{Incidence, Measurement, Measurements};
 
 /// Angles of a table's bins differ by more than this fraction, and by less where they are the same.
 const SAME: f64 = 1e-9;
 
-/// The rows of one incidence.
+/// The condensed rows of one incidence.
 #[derive(Default)]
-pub(super) struct Rows {
+struct Rows {
     measured: Vec<f64>,
     diffuse: Vec<f64>,
     shadowed: Vec<f64>,
@@ -33,8 +36,9 @@ pub(super) struct Rows {
     zero_weight: usize,
 }
 
-/// The rows of each incidence, side by side; `row` gives a, s and y of a reading.
-pub(super) fn rows(
+/// The condensed rows of each incidence, computed in parallel; `row` returns a, s and y of a
+/// reading.
+fn rows(
     incidences: &[Incidence],
     readings: &[Measurement],
     row: impl Fn(usize, &Geometry) -> [f64; 3] + Sync,
@@ -44,7 +48,7 @@ pub(super) fn rows(
         let mut cell: Option<(Angles, Triangle)> = None;
         for &i in &incidence.readings {
             let geometry = readings[i].geometry()?;
-            let angles = Angles::of(&geometry);
+            let angles = Angles::new(&geometry);
             let row = row(i, &geometry);
             rows.readings += 1;
             rows.zero_weight += usize::from(row[0] == 0.0);
@@ -75,8 +79,49 @@ impl Rows {
 }
 
 impl Objective {
+    /// The same E in fewer rows, which are not readings, for the measurements of a table: see the
+    /// page of this module. Other measurements, and models whose shadowing depends on k1, keep one
+    /// row for each reading.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`new`](Self::new).
+    pub(crate) fn condensed(
+        measurements: &Measurements,
+        family: Family,
+        n: f64,
+        weights: &Weights,
+    ) -> Result<Self, ObjectiveError> {
+        let by_width = matches!(family, Family::Smith | Family::Ggx);
+        if by_width || !measurements.is_table() {
+            return Self::new(measurements, family, n, weights);
+        }
+        let weights = weights
+            .of_all(measurements)
+            .ok_or(ObjectiveError::NoSigma)?;
+        let readings = measurements.readings();
+        let row = |i: usize, geometry: &Geometry| {
+            let w = weights[i].sqrt() * geometry.cos_theta();
+            let a = w / std::f64::consts::PI;
+            [
+                a,
+                a * VGroove.over_cosines_at(geometry),
+                w * readings[i].brdf,
+            ]
+        };
+        let incidences = measurements.incidences();
+        let rows = rows(&incidences, readings, row)?;
+        let mut objective = Self::with_capacity(family, n, 0);
+        objective.noise = None;
+        for (incidence, rows) in incidences.iter().zip(rows) {
+            objective.append(incidence.psi, rows);
+        }
+        objective.fresnel = objective.fresnel_column(n);
+        objective.normalised()
+    }
+
     /// Takes the rows of an incidence.
-    pub(super) fn append(&mut self, psi: f64, rows: Rows) {
+    fn append(&mut self, psi: f64, rows: Rows) {
         let start = self.len();
         self.measured.extend(rows.measured);
         self.diffuse.extend(rows.diffuse);

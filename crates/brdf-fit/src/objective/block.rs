@@ -1,0 +1,240 @@
+//! The columns of the model, evaluated for a block of rows at a time.
+
+use std::ops::Range;
+
+use brdf_core::facet::{Beckmann, Ellipsoid, FacetDistribution, Ggx, Power};
+use brdf_core::fresnel::Dielectric;
+use brdf_core::shadowing::{Shadowing, Smith, VGroove};
+use brdf_core::{Family, ModelParameters};
+
+use super::rows::{Angles, Objective};
+use crate::model::Parameter;
+
+/// The number of rows that are evaluated together: their columns stay in the nearest cache.
+pub(super) const BLOCK: usize = 32;
+
+/// The columns y, a, u of a block of rows, and the derivatives of u with respect to k1, n and p.
+/// Rows beyond the last one are zero.
+pub(super) struct Block {
+    pub(super) y: [f64; BLOCK],
+    pub(super) a: [f64; BLOCK],
+    pub(super) u: [f64; BLOCK],
+    pub(super) by: [[f64; BLOCK]; 3],
+}
+
+impl Block {
+    const EMPTY: Self = Self {
+        y: [0.0; BLOCK],
+        a: [0.0; BLOCK],
+        u: [0.0; BLOCK],
+        by: [[0.0; BLOCK]; 3],
+    };
+
+    /// Loads the columns y and a of these rows.
+    #[inline]
+    fn load(&mut self, measured: &[f64], diffuse: &[f64]) {
+        let rows = measured.len();
+        self.y[..rows].copy_from_slice(measured);
+        self.a[..rows].copy_from_slice(diffuse);
+        if rows < BLOCK {
+            let [by_k1, by_n, by_p] = &mut self.by;
+            for column in [&mut self.y, &mut self.a, &mut self.u, by_k1, by_n, by_p] {
+                column[rows..].fill(0.0);
+            }
+        }
+    }
+}
+
+impl Objective {
+    /// u of each row without its Fresnel factor, for the width k1 and the exponent p.
+    pub(crate) fn shape_column(&self, k1: f64, p: f64, shape: &mut Vec<f64>) {
+        fn fill<F: FacetDistribution, S: Shadowing>(
+            objective: &Objective,
+            facet: F,
+            shadowing: S,
+            shape: &mut Vec<f64>,
+        ) {
+            shape.clear();
+            shape.extend((0..objective.len()).map(|i| objective.shape(facet, shadowing, i)));
+        }
+        match self.family {
+            Family::Paper => fill(self, Ellipsoid::new(k1), VGroove, shape),
+            Family::Smith => fill(self, Ellipsoid::new(k1), Smith::new(k1), shape),
+            Family::Power => fill(self, Power::new(k1, p), VGroove, shape),
+            Family::Ggx => fill(self, Ggx::new(k1), Smith::new(k1), shape),
+            Family::Beckmann => fill(self, Beckmann::new(k1), VGroove, shape),
+        }
+    }
+
+    #[inline]
+    fn shape<F: FacetDistribution, S: Shadowing>(&self, facet: F, shadowing: S, i: usize) -> f64 {
+        let angles = &self.angles[i];
+        let shape = self.shadowed[i] * facet.relative(angles.tan2_alpha, angles.sec_alpha);
+        if S::DEPENDS_ON_WIDTH {
+            let (psi, theta) = (angles.cos_psi, angles.cos_theta);
+            shape * shadowing.over_cosines(psi, theta, angles.tan2_alpha)
+        } else {
+            shape
+        }
+    }
+
+    #[inline]
+    fn shape_by_k1<F: FacetDistribution, S: Shadowing>(
+        &self,
+        facet: F,
+        shadowing: S,
+        i: usize,
+    ) -> f64 {
+        let angles = &self.angles[i];
+        let (t, sec) = (angles.tan2_alpha, angles.sec_alpha);
+        let slope = facet.derivative_k1(t, sec);
+        if S::DEPENDS_ON_WIDTH {
+            let (psi, theta) = (angles.cos_psi, angles.cos_theta);
+            let by_facet = slope * shadowing.over_cosines(psi, theta, t);
+            let by_shadowing =
+                facet.relative(t, sec) * shadowing.over_cosines_derivative_k1(psi, theta, t);
+            self.shadowed[i] * (by_facet + by_shadowing)
+        } else {
+            self.shadowed[i] * slope
+        }
+    }
+
+    /// Evaluates u and the requested derivatives with respect to k1, n and p, block by block, and
+    /// passes each block to `take`. The terms of the family are chosen here, outside the loop.
+    pub(super) fn for_blocks(
+        &self,
+        at: &ModelParameters,
+        derivatives: [bool; 3],
+        rows: Range<usize>,
+        take: impl FnMut(Range<usize>, &Block),
+    ) {
+        let (k1, p) = (at.k1, at.p);
+        match self.family {
+            Family::Paper => {
+                self.for_blocks_of(Ellipsoid::new(k1), VGroove, at.n, derivatives, rows, take);
+            }
+            Family::Smith => {
+                let (facet, shadowing) = (Ellipsoid::new(k1), Smith::new(k1));
+                self.for_blocks_of(facet, shadowing, at.n, derivatives, rows, take);
+            }
+            Family::Power => {
+                self.for_blocks_of(Power::new(k1, p), VGroove, at.n, derivatives, rows, take);
+            }
+            Family::Ggx => {
+                let (facet, shadowing) = (Ggx::new(k1), Smith::new(k1));
+                self.for_blocks_of(facet, shadowing, at.n, derivatives, rows, take);
+            }
+            Family::Beckmann => {
+                self.for_blocks_of(Beckmann::new(k1), VGroove, at.n, derivatives, rows, take);
+            }
+        }
+    }
+
+    fn for_blocks_of<F: FacetDistribution, S: Shadowing>(
+        &self,
+        facet: F,
+        shadowing: S,
+        n: f64,
+        [by_k1, by_n, by_p]: [bool; 3],
+        rows: Range<usize>,
+        mut take: impl FnMut(Range<usize>, &Block),
+    ) {
+        let dielectric = Dielectric::new(n);
+        let mut start = rows.start;
+        let mut block = Block::EMPTY;
+        let mut fresnel = [0.0; BLOCK];
+        while start < rows.end {
+            let range = start..(start + BLOCK).min(rows.end);
+            block.load(&self.measured[range.clone()], &self.diffuse[range.clone()]);
+            self.fill_fresnel(&dielectric, range.clone(), &mut fresnel);
+            for (j, i) in range.clone().enumerate() {
+                block.u[j] = self.shape(facet, shadowing, i) * fresnel[j];
+            }
+            if by_k1 {
+                for (j, i) in range.clone().enumerate() {
+                    block.by[0][j] = self.shape_by_k1(facet, shadowing, i) * fresnel[j];
+                }
+            }
+            if by_n {
+                for (j, i) in range.clone().enumerate() {
+                    let Angles {
+                        cos_gamma,
+                        sin2_gamma,
+                        ..
+                    } = self.angles[i];
+                    let slope = dielectric.relative_derivative_n(cos_gamma, sin2_gamma);
+                    block.by[1][j] = self.shape(facet, shadowing, i) * slope;
+                }
+            }
+            if by_p {
+                for (j, i) in range.clone().enumerate() {
+                    let Angles {
+                        tan2_alpha,
+                        sec_alpha,
+                        ..
+                    } = self.angles[i];
+                    let slope = facet.derivative_p(tan2_alpha, sec_alpha);
+                    block.by[2][j] = self.shadowed[i] * slope * fresnel[j];
+                }
+            }
+            start = range.end;
+            take(range, &block);
+        }
+    }
+
+    /// R0(gamma) of some rows; the precomputed column is used if n is its refractive index.
+    fn fill_fresnel(&self, dielectric: &Dielectric, rows: Range<usize>, to: &mut [f64; BLOCK]) {
+        if dielectric.n() == self.n {
+            to[..rows.len()].copy_from_slice(&self.fresnel[rows]);
+        } else {
+            for (value, angles) in to.iter_mut().zip(&self.angles[rows]) {
+                *value = dielectric.relative(angles.cos_gamma);
+            }
+        }
+    }
+}
+
+/// Model - measured of a block.
+pub(super) fn residual(block: &Block, at: &ModelParameters) -> [f64; BLOCK] {
+    let mut residual = [0.0; BLOCK];
+    for (j, r) in residual.iter_mut().enumerate() {
+        *r = at.k2 * block.u[j] + at.kd * block.a[j] - block.y[j];
+    }
+    residual
+}
+
+/// The column of the Jacobian for a parameter, without its factor.
+pub(super) fn column(block: &Block, parameter: Parameter) -> &[f64; BLOCK] {
+    match parameter {
+        Parameter::K2 => &block.u,
+        Parameter::Kd => &block.a,
+        Parameter::K1 => &block.by[0],
+        Parameter::N => &block.by[1],
+        Parameter::P => &block.by[2],
+    }
+}
+
+/// The factor of the column of a parameter.
+pub(super) fn column_factor(at: &ModelParameters, parameter: Parameter) -> f64 {
+    match parameter {
+        Parameter::K2 | Parameter::Kd => 1.0,
+        Parameter::K1 | Parameter::N | Parameter::P => at.k2,
+    }
+}
+
+/// The derivatives of u that the free parameters need, with respect to k1, n and p.
+pub(super) fn derivatives_for(free: &[Parameter]) -> [bool; 3] {
+    [Parameter::K1, Parameter::N, Parameter::P].map(|parameter| free.contains(&parameter))
+}
+
+/// A scalar product in four independent running sums: fast, and the same on every processor.
+#[inline]
+pub(super) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (x, y) in x.as_chunks::<4>().0.iter().zip(y.as_chunks::<4>().0) {
+        for lane in 0..4 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}

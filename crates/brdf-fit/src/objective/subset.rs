@@ -1,0 +1,68 @@
+//! The objective over some of its rows, or with other weights.
+
+use super::error::ObjectiveError;
+use super::rows::{Objective, Segment};
+
+impl Objective {
+    /// The objective over some of the incidences: those whose index `keep` accepts.
+    pub(crate) fn subset(&self, keep: impl Fn(usize) -> bool) -> Result<Self, ObjectiveError> {
+        let segments = self.segments.iter().enumerate();
+        let kept = segments.filter(|(i, _)| keep(*i));
+        self.picked(kept.map(|(_, segment)| segment), 1)
+    }
+
+    /// The objective over at most about `limit` of the rows, evenly over each incidence.
+    pub(crate) fn thinned(&self, limit: usize) -> Result<Self, ObjectiveError> {
+        let step = self.len().div_ceil(limit);
+        // Condensed rows come in threes, a triangle of each cell: the same row of each would stand
+        // for no readings.
+        let of_threes = self.readings.is_empty() && step.is_multiple_of(3);
+        self.picked(self.segments.iter(), step + usize::from(of_threes))
+    }
+
+    /// The objective over every so many of the rows of the given incidences.
+    fn picked<'a>(
+        &self,
+        segments: impl Iterator<Item = &'a Segment>,
+        step: usize,
+    ) -> Result<Self, ObjectiveError> {
+        let mut objective = Self::with_capacity(self.family, self.n, self.len() / step);
+        if self.noise.is_none() {
+            objective.noise = None;
+        }
+        for segment in segments {
+            let start = objective.len();
+            for i in segment.rows.clone().step_by(step) {
+                objective.measured.push(self.measured[i]);
+                objective.diffuse.push(self.diffuse[i]);
+                objective.shadowed.push(self.shadowed[i]);
+                objective.fresnel.push(self.fresnel[i]);
+                objective.angles.push(self.angles[i]);
+                objective.readings.extend(self.readings.get(i));
+                if let (Some(to), Some(from)) = (&mut objective.noise, &self.noise) {
+                    to.push(from[i]);
+                }
+            }
+            objective.close_segment(segment.psi, start);
+            if let (1, Some(whole)) = (step, objective.segments.last_mut()) {
+                (whole.readings, whole.zero_weight) = (segment.readings, segment.zero_weight);
+            }
+        }
+        objective.normalised()
+    }
+
+    /// The objective with the weight of each row multiplied by a factor >= 0.
+    pub(crate) fn reweighted(&self, factor: impl Fn(usize) -> f64) -> Result<Self, ObjectiveError> {
+        let mut objective = self.clone();
+        for i in 0..self.len() {
+            let root = factor(i).sqrt();
+            objective.measured[i] *= root;
+            objective.diffuse[i] *= root;
+            objective.shadowed[i] *= root;
+            if let Some(noise) = &mut objective.noise {
+                noise[i] *= root;
+            }
+        }
+        objective.normalised()
+    }
+}

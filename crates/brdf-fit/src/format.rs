@@ -1,4 +1,4 @@
-//! How counts, numbers and angles are written in messages, tables and files.
+//! Counts, numbers and angles as text: in messages, tables and files.
 //!
 //! ```
 //! use brdf_fit::format::{counted, digits, in_degrees, shortest};
@@ -9,20 +9,37 @@
 //! assert_eq!(in_degrees(41.4_f64.to_radians()), 41.4);
 //! ```
 
+/// A text that is not a value of the expected kind, as a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ParseError {
+    message: String,
+}
+
+impl ParseError {
+    /// An error with a message that shows the text and says what is expected.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self {
+            message: message.into(),
+        }
+    }
+}
+
 /// `1 reading`, `3 readings`.
 pub fn counted(count: usize, noun: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{count} {noun}{plural}")
 }
 
-/// A number as it was written, or six significant digits where it has more.
+/// The shortest form of a number that has at most six significant digits, otherwise six
+/// significant digits.
 pub fn shortest(value: f64) -> String {
     let plain = value.to_string();
     let six = digits(value);
     if plain.len() < six.len() { plain } else { six }
 }
 
-/// Six significant digits, in whichever notation is short.
+/// Six significant digits, in decimal or scientific notation, whichever is shorter.
 pub fn digits(value: f64) -> String {
     if value == 0.0 {
         return "0".to_owned();
@@ -40,12 +57,13 @@ pub fn digits(value: f64) -> String {
     }
 }
 
-/// Degrees of an angle in radians, rounded so that what was written in degrees comes back.
+/// An angle in degrees, from radians, rounded so that an angle that was given in degrees is
+/// recovered exactly.
 pub fn in_degrees(radians: f64) -> f64 {
     (radians.to_degrees() * 1e9).round() / 1e9
 }
 
-/// Serialises an angle in radians as degrees: in files, angles are in degrees.
+/// Serialises an angle in radians as degrees: files hold angles in degrees.
 pub(crate) mod as_degrees {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -59,7 +77,7 @@ pub(crate) mod as_degrees {
     }
 }
 
-/// [`as_degrees`] of an angle that need not be there.
+/// [`as_degrees`] for an optional angle.
 pub(crate) mod as_optional_degrees {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 

@@ -1,4 +1,4 @@
-//! Watching a fit while it goes on, and cancelling it.
+//! Observing a fit while it runs, and cancelling it.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -6,23 +6,23 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use brdf_core::ModelParameters;
 
-/// The part of a fit that is going on.
+/// A phase of a fit and its report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
-    /// Stage 1, its initial values included.
+    /// Stage 1, including its initial values.
     Stage1,
-    /// Stage 2; its initial values as well where there is no stage 1.
+    /// Stage 2, including the initial values if there is no stage 1.
     Stage2,
     /// The check against the global optimum.
     GlobalCheck,
-    /// Fits with the weights of a robust loss.
+    /// The fit with a robust loss.
     Robust,
-    /// The fit under rho(psi) <= 1.
+    /// The fit under the energy constraint rho(psi) <= 1.
     Energy,
     /// Intervals of the parameters, and warnings.
     Uncertainty,
-    /// Prediction, bootstrap and the ladder of models. Where the model is chosen by the scan, this
-    /// comes first as well.
+    /// Cross-validation, bootstrap and the model hierarchy. If the scan chooses the model, this phase
+    /// also comes first.
     Assessment,
 }
 
@@ -45,29 +45,28 @@ impl fmt::Display for Phase {
 pub struct Step {
     /// The phase.
     pub phase: Phase,
-    /// The iteration within the phase, from 0. In the stages 0 is the start, and the others are
-    /// those of the minimiser; elsewhere each element of whatever the phase loops over counts.
+    /// The iteration within the phase, from 0. In the stages, 0 is the start and the following ones
+    /// are the iterations of the minimiser; in the other phases, each pass of the main loop counts.
     pub iteration: u64,
-    /// E in percent over the readings of the phase, with their weights there; `None` where the
-    /// phase, or this step of it, has none.
+    /// E in percent, over the readings of the phase and with their weights; `None` for a step that
+    /// does not evaluate E.
     pub e_percent: Option<f64>,
-    /// Where the phase has come to; `None` together with E.
+    /// The current parameters; `None` if `e_percent` is `None`.
     pub parameters: Option<ModelParameters>,
 }
 
-/// Who is told of the steps of a fit, and may end it.
+/// Receives the steps of a fit, and may cancel it.
 ///
-/// The steps of one phase come in order, but for [`Phase::Energy`] and [`Phase::Assessment`], which
-/// run on several threads.
-/// They come often (each width of a search, each iteration of a minimiser), so that one should be
-/// over at once.
+/// The steps of a phase arrive in order, except for [`Phase::Energy`] and [`Phase::Assessment`],
+/// which run on several threads. They are frequent (each width of a search, each iteration of a
+/// minimiser), so that an observer should return at once.
 pub trait Observer: Sync {
-    /// Takes notice of a step; [`ControlFlow::Break`] cancels the fit, which then ends before its
-    /// next step with [`FitError::Cancelled`].
+    /// Receives a step. [`ControlFlow::Break`] cancels the fit: it ends before its next step with
+    /// [`FitError::Cancelled`](crate::FitError::Cancelled).
     fn step(&self, step: &Step) -> ControlFlow<()>;
 }
 
-/// Nobody watches, and nothing is cancelled.
+/// No observer: nothing is reported, and nothing is cancelled.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NoObserver;
 
@@ -77,25 +76,25 @@ impl Observer for NoObserver {
     }
 }
 
-/// A [`Observer`] has cancelled the fit.
+/// An [`Observer`] cancelled the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// Counts the steps of one phase and tells them.
+/// Counts the steps of one phase and reports them to an observer.
 ///
-/// It is a observer itself: every step of a fit within the phase, such as those of the ladder of
-/// models, is one more step of the phase.
+/// It is an observer itself: each step of a fit within the phase, such as that of a candidate of the
+/// model hierarchy, is one step of the phase.
 pub struct Progress<'a> {
     observer: &'a dyn Observer,
     phase: Phase,
     next: AtomicU64,
-    /// By how much a step advances the count.
+    /// The increment of the count for each step.
     stride: u64,
 }
 
 impl<'a> Progress<'a> {
-    /// A phase whose first step is still to be told.
+    /// A phase that has not reported a step.
     pub fn new(observer: &'a dyn Observer, phase: Phase) -> Self {
         Self {
             observer,
@@ -105,34 +104,34 @@ impl<'a> Progress<'a> {
         }
     }
 
-    /// A phase that begins now: its step 0, without numbers.
+    /// A phase that begins now: reports its step 0, without numbers.
     pub(crate) fn begin(observer: &'a dyn Observer, phase: Phase) -> Result<Self, Cancelled> {
         let progress = Self::new(observer, phase);
-        progress.pass()?;
+        progress.advance()?;
         Ok(progress)
     }
 
-    /// What comes before a phase: all of it is told as step 0, without numbers.
-    pub(crate) fn before(observer: &'a dyn Observer, phase: Phase) -> Self {
+    /// The preparation of a phase: all its steps are reported as step 0, without numbers.
+    pub(crate) fn preparing(observer: &'a dyn Observer, phase: Phase) -> Self {
         Self {
             stride: 0,
             ..Self::new(observer, phase)
         }
     }
 
-    /// One more step, without numbers.
-    pub(crate) fn pass(&self) -> Result<(), Cancelled> {
-        self.tell(None)
+    /// Reports one more step, without numbers.
+    pub(crate) fn advance(&self) -> Result<(), Cancelled> {
+        self.notify(None)
     }
 
-    /// One more step, which has come to these parameters with this E, a fraction.
-    pub(crate) fn reach(&self, error: f64, at: &ModelParameters) -> Result<(), Cancelled> {
-        // The refits of the last phases go away from the fit: they are no states of it.
+    /// Reports one more step, with the current parameters and E as a fraction.
+    pub(crate) fn advance_to(&self, error: f64, at: &ModelParameters) -> Result<(), Cancelled> {
+        // The refits of the last phases are not states of the fit itself.
         let shown = !matches!(self.phase, Phase::Uncertainty | Phase::Assessment);
-        self.tell(shown.then_some((error, at)))
+        self.notify(shown.then_some((error, at)))
     }
 
-    fn tell(&self, at: Option<(f64, &ModelParameters)>) -> Result<(), Cancelled> {
+    fn notify(&self, at: Option<(f64, &ModelParameters)>) -> Result<(), Cancelled> {
         let step = Step {
             phase: self.phase,
             iteration: self.next.fetch_add(self.stride, Ordering::Relaxed),
@@ -148,7 +147,7 @@ impl<'a> Progress<'a> {
 
 impl Observer for Progress<'_> {
     fn step(&self, _: &Step) -> ControlFlow<()> {
-        match self.pass() {
+        match self.advance() {
             Ok(()) => ControlFlow::Continue(()),
             Err(Cancelled) => ControlFlow::Break(()),
         }

@@ -275,7 +275,7 @@ impl Arguments {
         if !self.fits_every_model() {
             return vec![options];
         }
-        let of = |&model: &Model| options.of_model(model);
+        let of = |&model: &Model| options.with_model(model);
         Model::WITH_REFERENCES.iter().map(of).collect()
     }
 

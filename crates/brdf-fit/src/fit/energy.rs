@@ -1,4 +1,4 @@
-//! Fits that keep energy: no more light leaves the surface than falls on it.
+//! Fits under the energy constraint: the surface reflects no more light than it receives.
 
 use argmin::core::{CostFunction, Error, Executor, State as _};
 use argmin::solver::neldermead::NelderMead;
@@ -16,49 +16,49 @@ use crate::progress::{Cancelled, Progress};
 use crate::solver::SolverError;
 use crate::solver::observed::Observed;
 
-/// Up to this incidence a fit keeps energy when nobody says another angle, in degrees.
+/// The default limit of the energy constraint, an incidence angle in degrees.
 pub const DEFAULT_LIMIT_DEG: f64 = 85.0;
 
-/// Steps of incidence in which the largest reflectance is looked for: it is a smooth function of
-/// the incidence angle.
+/// The number of steps of the incidence angle in which the largest reflectance, a smooth function of
+/// the angle, is searched.
 const STEPS: u32 = 17;
 
 /// Relative tolerance of the reflectances.
 const TOLERANCE: f64 = 1e-5;
 
-/// Points of the search from which simplices start.
+/// The number of points of the grid from which simplices start.
 const STARTS: usize = 6;
 
-/// Relative tolerance of the reflectances by which the points of the search are ranked.
+/// Relative tolerance of the reflectances by which the points of the grid are ranked.
 const ROUGH: f64 = 0.03;
 
-/// The simplex has converged when E differs by less than this fraction of it over its corners.
+/// A simplex has converged when E over its corners differs by less than this fraction of E.
 const SPREAD: f64 = 1e-12;
 
-/// Simplices one after another, and iterations of each.
+/// The largest number of successive simplices, and of iterations of each.
 const SIMPLICES: usize = 3;
 const ITERATIONS: u64 = 150;
 
-/// What keeping energy did to a fit.
+/// The effect of the energy constraint on a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct EnergyConstraint {
-    /// rho(psi) <= 1 was asked for up to this incidence, in degrees.
+    /// The incidence angle up to which rho(psi) <= 1 is required, in degrees.
     pub limit_deg: f64,
-    /// The parameters without that.
+    /// The parameters without the constraint.
     pub free: ModelParameters,
-    /// E without that, in percent.
+    /// E without the constraint in percent.
     pub free_e_percent: f64,
-    /// Whether the fit was changed by it.
+    /// Whether the constraint changes the fit.
     pub binding: bool,
 }
 
-/// The lowest E under rho(psi) <= 1 for all psi up to the limit, in radians; `best` is the minimum
-/// without that.
+/// The minimum of E under rho(psi) <= 1 for all psi up to the limit, in radians; `best` is the
+/// minimum without the constraint.
 ///
-/// For given k1, n and p the reflectance is k2 s(psi) + kD, so that the condition is the one line
+/// For given k1, n and p the reflectance is k2 s(psi) + kD, so that the constraint is
 /// k2 S + kD <= 1 with S the largest s up to the limit, and the best weights under it are known in
-/// closed form. The points of the search are ranked by E with these weights, S being taken at the
-/// limit alone and roughly; simplices go on from the best few, with S in full.
+/// closed form. The points of the grid are ranked by E with these weights and an approximate S at the
+/// limit; simplices with the exact S start from the best points.
 pub(crate) fn constrain_energy(
     objective: &Objective,
     model: ReducedModel,
@@ -96,7 +96,7 @@ pub(crate) fn constrain_energy(
     }
 }
 
-/// The parameters besides the weights.
+/// The parameters other than the weights.
 fn axes(model: ReducedModel) -> Vec<Parameter> {
     let weights = [Parameter::K2, Parameter::Kd];
     let free = model.free().iter().copied();
@@ -130,7 +130,7 @@ struct Bounded<'a> {
     model: ReducedModel,
     limit: f64,
     axes: Vec<Parameter>,
-    /// The values of what is not on the axes.
+    /// The values of the parameters that are not on the axes.
     fixed: ModelParameters,
     progress: &'a Progress<'a>,
 }
@@ -145,12 +145,12 @@ impl Bounded<'_> {
         at.k2 * specular + at.kd
     }
 
-    /// The best weights under the condition, and E with them: infinite where fixed weights break it.
+    /// The best weights under the constraint with their E; infinite if fixed weights violate it.
     fn best_weights(&self, at: &ModelParameters) -> (ModelParameters, f64) {
         self.weights_below(at, largest_specular(self.model.family(), at, self.limit))
     }
 
-    /// [`best_weights`](Self::best_weights), the largest reflectance being known.
+    /// [`best_weights`](Self::best_weights) for a known largest reflectance.
     fn weights_below(&self, at: &ModelParameters, largest: f64) -> (ModelParameters, f64) {
         let sums = self.objective.profile_sums(at);
         let Some((k2, kd)) = weights_below(fixed_weights(self.model), &sums, largest) else {
@@ -160,14 +160,14 @@ impl Bounded<'_> {
         (bounded, self.objective.error(&bounded))
     }
 
-    /// The lowest points of the search under the condition, roughly; the lowest first.
+    /// The approximately lowest points of the grid under the constraint, in ascending order of E.
     fn best_points(&self) -> Result<Vec<ModelParameters>, Cancelled> {
         let search = GridSearch::new(self.objective, self.model, self.progress)?;
         let ranked = search.whole().ascending();
         let mut ranked: Vec<(ModelParameters, f64)> = ranked
             .into_par_iter()
             .map(|point| {
-                self.progress.pass()?;
+                self.progress.advance()?;
                 let at = point.parameters;
                 let largest = specular(self.model.family(), &at, self.limit, ROUGH);
                 Ok(self.weights_below(&at, largest))
@@ -179,7 +179,7 @@ impl Bounded<'_> {
         Ok(ranked.into_iter().map(|(at, _)| at).collect())
     }
 
-    /// Simplices one after another, until one brings nothing.
+    /// Runs simplices one after another until one makes no progress.
     fn descend(&self, start: &ModelParameters) -> Result<(ModelParameters, f64), SolverError> {
         let mut lowest = self.best_weights(start);
         for _ in 0..SIMPLICES {
@@ -231,7 +231,7 @@ impl Bounded<'_> {
         );
         let corner = |axis: usize| {
             let mut corner = start.clone();
-            // Towards the middle of the range, so that the corner lies within it.
+            // The corner is moved towards the middle of the range, so that it lies within.
             corner[axis] += if self.axes[axis] == Parameter::N && start[axis] > 3.0 {
                 -0.1
             } else {
@@ -243,8 +243,8 @@ impl Bounded<'_> {
         let solver = NelderMead::new(corners.collect())
             .with_sd_tolerance(SPREAD * error)
             .map_err(|error| SolverError::from_argmin(&error))?;
-        let tell = |_: &_, _| self.progress.pass();
-        let result = Executor::new(self, Observed { solver, tell })
+        let notify = |_: &_, _| self.progress.advance();
+        let result = Executor::new(self, Observed { solver, notify })
             .configure(|state| state.max_iters(ITERATIONS))
             .ctrlc(false)
             .run()
@@ -267,8 +267,8 @@ impl CostFunction for &Bounded<'_> {
     }
 }
 
-/// The best weights with k2 `largest` + kD <= 1: those without the condition where they keep it,
-/// else the best on the line, since E is convex. `None` where what is fixed breaks the condition.
+/// The best weights with k2 `largest` + kD <= 1: the unconstrained ones if they satisfy it, otherwise
+/// the best ones on the boundary, since E is convex. `None` if fixed weights violate the constraint.
 fn weights_below(fixed: [Option<f64>; 2], sums: &ProfileSums, largest: f64) -> Option<(f64, f64)> {
     let (k2, kd, _) = solve_for(fixed, sums);
     if k2 * largest + kd <= 1.0 {
@@ -277,13 +277,13 @@ fn weights_below(fixed: [Option<f64>; 2], sums: &ProfileSums, largest: f64) -> O
     match fixed {
         [Some(_), Some(_)] => None,
         [Some(k2), None] => {
-            // Nothing leaves by an absent lobe, whatever its shape.
+            // A lobe with k2 = 0 reflects nothing for any shape.
             let specular = if k2 > 0.0 { k2 * largest } else { 0.0 };
             (specular <= 1.0).then_some((k2, 1.0 - specular))
         }
         [None, Some(kd)] => (kd <= 1.0).then_some(((1.0 - kd) / largest, kd)),
         [None, None] => {
-            // kD = 1 - k2 S leaves y - a to be described by k2 (u - S a).
+            // With kD = 1 - k2 S, the term k2 (u - S a) describes y - a.
             let &ProfileSums { uu, ua, uy, aa, ay } = sums;
             let squared = uu - 2.0 * largest * ua + largest * largest * aa;
             let product = uy - ua - largest * ay + largest * aa;

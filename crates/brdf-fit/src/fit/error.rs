@@ -10,66 +10,68 @@ use crate::solver::SolverError;
 
 /// Why a scan cannot be fitted.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FitError {
-    /// More than one wavelength: each has parameters of its own.
-    #[error("{0} wavelengths in one fit: split them with Measurements::by_wavelength")]
+    /// More than one wavelength in a scan: each wavelength has its own parameters.
+    #[error("{0} wavelengths in one fit: expected the readings of one wavelength")]
     SeveralWavelengths(usize),
-    /// No refractive index for the wavelength.
+    /// No refractive index is stated for the wavelength, in micrometres.
     #[error(
-        "no refractive index{}: give it with --n 1.5 or --n 0.63=1.60,0.85=1.58, by a column n, \
-         or by a line \"# refractive_index: 1.5\" in the file",
+        "no refractive index{}: state it in the options of the fit, in a column n, or in a line \
+         \"# refractive_index: 1.5\" of the file",
         at_wavelength(*.0)
     )]
     NoRefractiveIndex(Option<f64>),
-    /// The refractive index is outside of the model's domain.
+    /// The refractive index is outside the domain of the model.
     #[error(transparent)]
     RefractiveIndex(#[from] ParameterError),
-    /// The limit of rho(psi) <= 1 is no incidence.
+    /// The limit of the energy constraint is not an incidence angle; in degrees.
     #[error("rho(psi) <= 1 up to {0} deg: expected a limit from 0 to below 90 deg")]
     EnergyLimit(f64),
-    /// No more readings than free parameters.
+    /// The readings that influence the fit do not outnumber the free parameters.
     #[error(
         "{}: {} need at least {}", counted(*.count, "reading"),
         counted(*.parameters, "free parameter"), .parameters + 1
     )]
     TooFewReadings {
-        /// How many there are.
+        /// The number of readings.
         count: usize,
-        /// How many parameters the model has free.
+        /// The number of free parameters.
         parameters: usize,
     },
-    /// All readings have one value.
+    /// All readings have the same value.
     #[error(
-        "all {count} readings are {value} 1/sr: such data are kD = pi times that, and say nothing \
-         of k2 and k1 (a saturated detector, a constant column?)"
+        "all {count} readings are {value} 1/sr: such data determine only kD, as pi times this value, \
+         and neither k2 nor k1 (saturated detector, constant column?)"
     )]
     AllEqual {
-        /// How many there are.
+        /// The number of readings.
         count: usize,
-        /// Their value.
+        /// The value in 1/sr.
         value: f64,
     },
-    /// E is not defined.
+    /// E is not defined for the readings and weights.
     #[error(transparent)]
     Objective(#[from] ObjectiveError),
-    /// Neither stage is asked for.
-    #[error("no stage: ask for stage 1, for stage 2, or for both")]
+    /// Neither stage is requested.
+    #[error("no stage: expected stage 1, stage 2, or both")]
     NoStage,
-    /// Stage 1 is asked for alone, and has no readings that could be fitted.
+    /// Stage 1 is requested alone, but has too few readings.
     #[error("stage 1 alone cannot be fitted: {0}")]
     Stage1Alone(String),
     /// A parameter cannot be fixed.
     #[error(transparent)]
     Fixed(#[from] FixedError),
-    /// The fixed parameters leave no fit under rho(psi) <= 1.
+    /// The fixed parameters contradict the energy constraint; the limit in degrees.
     #[error(
-        "with the fixed parameters rho(psi) is above 1 before {0} deg, whatever the others are"
+        "with the fixed parameters rho(psi) exceeds 1 below {0} deg for all values of the other \
+         parameters"
     )]
     FixedAboveEnergy(f64),
     /// A minimiser failed.
     #[error("the minimiser failed: {0}")]
     Solver(String),
-    /// A [`Observer`] has cancelled the fit.
+    /// An [`Observer`](crate::progress::Observer) cancelled the fit.
     #[error("cancelled")]
     Cancelled,
 }
@@ -90,7 +92,7 @@ impl From<SolverError> for FitError {
 }
 
 impl FitError {
-    /// Whether the user can mend it by other arguments, the readings being what they are.
+    /// Whether other options can avoid the error for the same readings.
     pub fn is_usage(&self) -> bool {
         matches!(
             self,

@@ -1,10 +1,10 @@
-//! The exact minimum over k2 and kD for given other parameters, and the search over those that
+//! The exact minimum over k2 and kD for given other parameters, and the grid search over those, which
 //! checks each fit against the global optimum.
 //!
-//! For a fixed width, index and exponent a model is linear in k2 and kD, so E has one minimum over
-//! k2 >= 0, kD >= 0, which is known in closed form. What remains is a function of k1, and where
-//! they are free of n and p, the profile. Its scalar products are kept for each incidence by
-//! itself: with them the profile of any choice of incidences costs nothing more.
+//! For a fixed width, index and exponent the model is linear in k2 and kD, so that E has one minimum
+//! over k2 >= 0, kD >= 0, which is known in closed form. E at this minimum is the profile, a function
+//! of k1 and, if they are free, of n and p. Its scalar products are stored for each fold of the
+//! incidences: the profile of any choice of folds follows without evaluating the model again.
 
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
@@ -13,29 +13,29 @@ use crate::model::{K1_RANGE, Parameter, ReducedModel};
 use crate::objective::{Objective, ProfileSums};
 use crate::progress::{Cancelled, Progress};
 
-/// Steps of the search, equal in ln k1: 0.25 each. As a function of ln k1 the paper's model has its
-/// nearest singularity at a distance of pi/2 in the complex plane, so that its profile cannot have
-/// features much narrower.
+/// The number of steps in ln k1, of 0.25 each. As a function of ln k1 the paper's model has its
+/// nearest singularity at a distance of pi/2 in the complex plane, so that its profile has no much
+/// narrower features.
 const STEPS: u32 = 83;
 
-/// Refractive indices of the search: R0 changes most from one to the next at the small ones.
+/// The refractive indices of the grid, denser at small values, where R0 changes most.
 const INDICES: [f64; 14] = [
     1.0, 1.05, 1.12, 1.2, 1.3, 1.4, 1.5, 1.65, 1.85, 2.1, 2.5, 3.1, 4.2, 6.0,
 ];
 
-/// Exponents of the search, about equal in their logarithm.
+/// The exponents of the grid, about equally spaced in their logarithm.
 const EXPONENTS: [f64; 12] = [
     0.1, 0.16, 0.25, 0.4, 0.63, 1.0, 1.6, 2.5, 4.0, 6.3, 10.0, 16.0,
 ];
 
-/// A search over more than k1 takes about so many readings at the most; the minimum is found with
-/// all of them.
+/// A search over n or p uses about this number of readings at most. The minima are refined with all
+/// readings.
 const SEARCHED_READINGS: usize = 2048;
 
-/// So many minima of a search are looked at.
+/// The largest number of minima of the grid that are refined.
 const MOST_MINIMA: usize = 4;
 
-/// The profile at one point: the best weights there, and E with them.
+/// A point of the profile: the best weights at the other parameters, and E with them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ProfilePoint {
     /// All parameters.
@@ -45,7 +45,7 @@ pub struct ProfilePoint {
     pub error: f64,
 }
 
-/// E minimised over the weights that a model fits, at the other parameters given.
+/// The minimum of E over the free weights of a model, at the given other parameters.
 pub fn best_weights(
     objective: &Objective,
     model: ReducedModel,
@@ -58,13 +58,13 @@ pub fn best_weights(
     }
 }
 
-/// k2 and kD where a model does not fit them.
+/// The values of k2 and kD that are fixed.
 pub(crate) fn fixed_weights(model: ReducedModel) -> [Option<f64>; 2] {
     [Parameter::K2, Parameter::Kd].map(|weight| model.fixed(weight))
 }
 
-/// k2, kD and E of the best weights where some are fixed, the readings being normalised: what a
-/// fixed part leaves of the readings is described by the other.
+/// The best k2, kD and their E for normalised readings, where some weights are fixed: the free part
+/// describes the readings less the fixed part.
 pub(crate) fn solve_for(fixed: [Option<f64>; 2], sums: &ProfileSums) -> (f64, f64, f64) {
     let &ProfileSums { uu, ua, uy, aa, ay } = sums;
     match fixed {
@@ -86,7 +86,7 @@ pub(crate) fn solve_for(fixed: [Option<f64>; 2], sums: &ProfileSums) -> (f64, f6
     }
 }
 
-/// The best weight of one part by itself.
+/// The best weight of one part alone.
 fn alone(measured: f64, squared: f64) -> f64 {
     if squared > 0.0 {
         (measured / squared).max(0.0)
@@ -95,14 +95,14 @@ fn alone(measured: f64, squared: f64) -> f64 {
     }
 }
 
-/// k2, kD and E of the best weights.
+/// The best k2, kD and their E.
 ///
-/// Either both are positive and the normal equations hold for both, or one is zero and the other
-/// is the best by itself.
+/// Either both weights are positive and satisfy the normal equations, or one is zero and the other
+/// is the best weight of its part alone.
 pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
     let &ProfileSums { uu, ua, uy, aa, ay } = sums;
     let determinant = uu * aa - ua * ua;
-    // Collinear to rounding: the two parts cannot be told apart, and one of them does as well.
+    // If the parts are collinear within rounding, one of them alone reaches the minimum.
     if determinant > 1e-14 * uu * aa {
         let k2 = (uy * aa - ay * ua) / determinant;
         let kd = (ay * uu - uy * ua) / determinant;
@@ -118,29 +118,29 @@ pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
     }
 }
 
-/// The scalar products of a search for each of its points and each fold of the incidences.
+/// The scalar products at each point of the grid, for each fold of the incidences.
 #[derive(Debug, Clone)]
 pub(crate) struct GridSearch {
     /// k2 and kD where they are fixed.
     weights: [Option<f64>; 2],
-    /// k1, n and p of the axes.
+    /// The values of k1, n and p on the axes of the grid.
     axes: [Vec<f64>; 3],
-    /// uu, ua, uy: folds within n within k1 within p.
+    /// uu, ua and uy, indexed by p, k1, n and fold; the fold varies fastest.
     lobe: Vec<[f64; 3]>,
     /// aa, ay, yy of each fold.
     fixed: Vec<[f64; 3]>,
 }
 
-/// The profile of a search over some choice of the incidences.
+/// The profile over some choice of the folds.
 #[derive(Debug, Clone)]
 pub(crate) struct Profile<'a> {
     search: &'a GridSearch,
-    /// Weights and E in the order of the search.
+    /// k2, kD and E, in the order of the grid.
     points: Vec<(f64, f64, f64)>,
 }
 
 impl GridSearch {
-    /// The search for a model over the incidences of a objective; each width is told.
+    /// The grid search of a model with an objective. Each width is reported as a step.
     pub(crate) fn new(
         objective: &Objective,
         model: ReducedModel,
@@ -148,7 +148,7 @@ impl GridSearch {
     ) -> Result<Self, Cancelled> {
         let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
         if several_axes && objective.len() > SEARCHED_READINGS {
-            // The few readings of E may all be zero: then all of them are taken.
+            // If E is not defined for the subset, for example because it is zero, all readings are used.
             if let Ok(thinned) = objective.thinned(SEARCHED_READINGS) {
                 return Self::over(&thinned, model, progress);
             }
@@ -184,7 +184,7 @@ impl GridSearch {
         let mut shape = Vec::with_capacity(objective.len());
         for &p in &axes[2] {
             for &k1 in &axes[0] {
-                progress.pass()?;
+                progress.advance()?;
                 objective.shape_column(k1, p, &mut shape);
                 for fresnel in &fresnel {
                     let start = lobe.len();
@@ -213,7 +213,7 @@ impl GridSearch {
         })
     }
 
-    /// The profile with each fold of the incidences taken so many times.
+    /// The profile with each fold repeated `times` times.
     pub(crate) fn profile(&self, times: impl Fn(usize) -> f64) -> Profile<'_> {
         let times: Vec<f64> = (0..self.fixed.len()).map(times).collect();
         let sum = |products: &[[f64; 3]]| {
@@ -226,7 +226,7 @@ impl GridSearch {
         let [aa, ay, yy] = sum(&self.fixed);
         let points = self.lobe.chunks(self.fixed.len()).map(|products| {
             let [uu, ua, uy] = sum(products);
-            // E is a fraction of the readings that are taken.
+            // E is normalised by the readings of the chosen folds.
             let [uu, ua, uy, aa, ay] = [uu, ua, uy, aa, ay].map(|product| product / yy);
             solve_for(self.weights, &ProfileSums { uu, ua, uy, aa, ay })
         });
@@ -243,8 +243,8 @@ impl GridSearch {
 }
 
 impl Profile<'_> {
-    /// Indices on the axes of k1, n and p of a point.
-    fn place(&self, i: usize) -> [usize; 3] {
+    /// The indices of a point on the axes of k1, n and p.
+    fn indices(&self, i: usize) -> [usize; 3] {
         let [k1, n, _] = self.search.axes.each_ref().map(Vec::len);
         [i / n % k1, i % n, i / n / k1]
     }
@@ -255,7 +255,7 @@ impl Profile<'_> {
     }
 
     fn point(&self, i: usize) -> ProfilePoint {
-        let [k1, n, p] = self.place(i);
+        let [k1, n, p] = self.indices(i);
         let (k2, kd, error) = self.points[i];
         let parameters = ModelParameters {
             k2,
@@ -267,17 +267,17 @@ impl Profile<'_> {
         ProfilePoint { parameters, error }
     }
 
-    /// The places next to one, along each axis.
-    fn neighbours(&self, place: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    /// The adjacent points along each axis.
+    fn adjacent(&self, indices: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
         let counts = self.search.axes.each_ref().map(Vec::len);
         (0..3).flat_map(move |axis| {
             let moved = move |to: usize| {
-                let mut place = place;
-                place[axis] = to;
-                place
+                let mut indices = indices;
+                indices[axis] = to;
+                indices
             };
-            let below = place[axis].checked_sub(1).map(moved);
-            let above = (place[axis] + 1 < counts[axis]).then(|| moved(place[axis] + 1));
+            let below = indices[axis].checked_sub(1).map(moved);
+            let above = (indices[axis] + 1 < counts[axis]).then(|| moved(indices[axis] + 1));
             below.into_iter().chain(above)
         })
     }
@@ -296,12 +296,12 @@ impl Profile<'_> {
         points
     }
 
-    /// The few lowest of the points that are lower than their neighbours, the lowest first.
+    /// The lowest local minima of the grid, in ascending order of E.
     pub(crate) fn minima(&self) -> Vec<ProfilePoint> {
         let is_minimum = |i: usize| {
             let error = self.points[i].2;
-            self.neighbours(self.place(i))
-                .map(|place| self.index(place))
+            self.adjacent(self.indices(i))
+                .map(|indices| self.index(indices))
                 .all(|j| error < self.points[j].2 || (error == self.points[j].2 && i < j))
         };
         let indices = (0..self.points.len()).filter(|&i| is_minimum(i));
@@ -311,7 +311,7 @@ impl Profile<'_> {
         minima
     }
 
-    /// Whether parameters are no farther from a point of the search than to its neighbours.
+    /// Whether parameters lie between the points that are adjacent to a point of the grid.
     pub(crate) fn is_next_to(&self, point: &ProfilePoint, at: &ModelParameters) -> bool {
         let parameters = [Parameter::K1, Parameter::N, Parameter::P];
         self.search
@@ -326,12 +326,12 @@ impl Profile<'_> {
             })
     }
 
-    /// The lowest E at each value of k1 or n: `axis` 0 or 1.
+    /// The lowest point of the profile at each value of k1 or n.
     pub(crate) fn along(&self, parameter: Parameter) -> Vec<ProfilePoint> {
         let axis = usize::from(parameter == Parameter::N);
         let mut lowest: Vec<Option<usize>> = vec![None; self.search.axes[axis].len()];
         for i in 0..self.points.len() {
-            let best = &mut lowest[self.place(i)[axis]];
+            let best = &mut lowest[self.indices(i)[axis]];
             if best.is_none_or(|j| self.points[i].2 < self.points[j].2) {
                 *best = Some(i);
             }
@@ -344,14 +344,14 @@ impl Profile<'_> {
     }
 }
 
-/// Adds products so many times.
+/// Adds `times` times the products to the sum.
 fn add(sum: &mut [f64; 3], products: &[f64; 3], times: f64) {
     for (sum, product) in sum.iter_mut().zip(products) {
         *sum += times * product;
     }
 }
 
-/// The widths of the search.
+/// The widths of the grid.
 fn widths() -> Vec<f64> {
     let span = (K1_RANGE.1 / K1_RANGE.0).ln();
     let width = |step| match step {
@@ -362,7 +362,8 @@ fn widths() -> Vec<f64> {
     (0..=STEPS).map(width).collect()
 }
 
-/// uu, ua and uy over some rows, u being shape times Fresnel factor; several running sums.
+/// uu, ua and uy over some rows, with u the shape times the Fresnel factor, in independent running
+/// sums.
 fn lobe_products(shape: &[f64], fresnel: &[f64], a: &[f64], y: &[f64]) -> [f64; 3] {
     const LANES: usize = 4;
     let mut sums = [[0.0; LANES]; 3];
@@ -434,7 +435,7 @@ mod tests {
             let profile = search.whole();
             for i in (0..profile.points.len()).step_by(37) {
                 let point = profile.point(i);
-                assert_eq!(profile.index(profile.place(i)), i);
+                assert_eq!(profile.index(profile.indices(i)), i);
                 let error = objective.error(&point.parameters);
                 assert!((error - point.error).abs() < 1e-12, "{model}");
                 let exact = best_weights(&objective, model.into(), point.parameters);

@@ -185,7 +185,7 @@ impl<'a> FitProblem<'a> {
             .stage1
             .filter(|_| self.first_stage.left_out.is_none());
         let first_phase = first_method.map_or(Phase::Stage2, |_| Phase::Stage1);
-        let (initial, start) = self.starting_point(&Progress::before(observer, first_phase))?;
+        let (initial, start) = self.starting_point(&Progress::preparing(observer, first_phase))?;
 
         let stage1 = first_method
             .map(|method| self.run_stage(method, own, start, Phase::Stage1, observer))

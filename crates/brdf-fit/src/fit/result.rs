@@ -1,4 +1,4 @@
-//! A fit with every step on the way.
+//! The result of a fit, with each stage.
 
 use brdf_core::{ModelParameters, Parameters};
 use serde::{Deserialize, Serialize};
@@ -12,57 +12,58 @@ use crate::model::{Model, Parameter};
 use crate::objective::IncidenceError;
 use crate::solver::{Method, Termination};
 
-/// Version of the JSON that [`Fit`] is written as.
+/// The version of the JSON form of [`Fit`].
 pub const FORMAT_VERSION: u32 = 1;
 
-/// A fit of one wavelength of a scan, with every step on the way.
+/// The fit of one wavelength of a scan, with each stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
-    /// [`FORMAT_VERSION`] of the program that wrote it.
+    /// The [`FORMAT_VERSION`] of the program that wrote the fit.
     pub format_version: u32,
-    /// Wavelength in micrometres, where the scan states one.
+    /// Wavelength in micrometres, if the scan states one.
     pub wavelength_um: Option<f64>,
-    /// Refractive index of the coating: as given, or as fitted where the model has it free.
+    /// The refractive index: stated, or fitted if it is free.
     pub n: f64,
-    /// Exponent of the facet distribution; 1 where the model has none.
+    /// The exponent of the facet distribution; 1 if the model has none.
     #[serde(default = "one")]
     pub p: f64,
     /// The settings of the fit.
     pub options: FitOptions,
-    /// How many readings were fitted: all, or those of stage 1 where it is alone.
+    /// The number of fitted readings: all, or those of stage 1 if it is alone.
     pub readings: usize,
-    /// How many of them have a weight of zero, and so no say.
+    /// The number of these readings with zero weight, which do not influence the fit.
     #[serde(rename = "weightless")]
     pub zero_weight: usize,
-    /// The fitted parameters: those of the last stage, or of the lower minimum that the check found.
+    /// The fitted parameters: those of the last stage, or of a lower minimum that the global check
+    /// found.
     pub parameters: Parameters,
-    /// E over the fitted readings, in percent.
+    /// E over the fitted readings in percent.
     pub e_percent: f64,
-    /// E of each incidence by itself.
+    /// E of each incidence.
     pub incidences: Vec<IncidenceError>,
     /// The initial values.
     pub initial: InitialValues,
-    /// E of the initial values over the readings of the first stage, and over all, in percent.
+    /// E of the initial values in percent.
     pub initial_e_percent: OwnAndAll,
-    /// Stage 1; `None` where it was left out.
+    /// Stage 1; `None` if it is omitted.
     pub stage1: Option<Stage>,
-    /// Why stage 1 was left out although it was asked for.
+    /// The reason why a requested stage 1 is omitted.
     pub stage1_left_out: Option<String>,
-    /// Stage 2; `None` where stage 1 is alone.
+    /// Stage 2; `None` if stage 1 is alone.
     pub stage2: Option<Stage>,
-    /// The check against the global optimum; `None` where it was left out.
+    /// The check against the global optimum; `None` if it is omitted.
     pub global_check: Option<GlobalCheck>,
-    /// What another loss than the square did, where one was asked for.
+    /// The result of the robust loss, if requested.
     #[serde(default)]
     pub robust: Option<RobustFit>,
-    /// What keeping energy did, where it was asked for.
+    /// The result of the energy constraint, if requested.
     #[serde(default)]
     pub energy: Option<EnergyConstraint>,
-    /// Time of the whole fit in seconds.
+    /// The time of the whole fit in seconds.
     pub seconds: f64,
 }
 
-/// E in percent over the readings of a stage, and over all readings.
+/// E in percent, over the readings of a stage and over all readings.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct OwnAndAll {
     /// Over the readings of the stage.
@@ -71,24 +72,24 @@ pub struct OwnAndAll {
     pub all: f64,
 }
 
-/// What one stage did.
+/// The result of one stage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
-    /// Its method.
+    /// The method.
     pub method: Method,
-    /// Where it ended.
+    /// The parameters at the end of the stage.
     pub parameters: ModelParameters,
-    /// E there.
+    /// E at the end of the stage.
     pub e_percent: OwnAndAll,
-    /// How many readings it used.
+    /// The number of readings of the stage.
     pub readings: usize,
-    /// Its iterations.
+    /// The number of iterations.
     pub iterations: u64,
-    /// How often it evaluated E, alone or with derivatives.
+    /// The number of evaluations of E, with or without derivatives.
     pub evaluations: u64,
-    /// Its time in seconds.
+    /// The time of the stage in seconds.
     pub seconds: f64,
-    /// Why it stopped.
+    /// The reason of the termination.
     #[serde(rename = "ending")]
     pub termination: Termination,
 }
@@ -107,17 +108,17 @@ impl Fit {
         self.options.model
     }
 
-    /// The last of its stages.
+    /// The last stage.
     pub fn last_stage(&self) -> Option<&Stage> {
         self.stage2.as_ref().or(self.stage1.as_ref())
     }
 
-    /// Whether a parameter was fitted: free in the model, and not fixed.
+    /// Whether a parameter is fitted: free in the model, and not fixed.
     pub fn fits(&self, parameter: Parameter) -> bool {
         self.options.reduced_model().frees(parameter)
     }
 
-    /// Readings that have a say, less the fitted parameters.
+    /// The number of readings that influence the fit, less the number of fitted parameters.
     pub fn degrees_of_freedom(&self) -> usize {
         (self.readings - self.zero_weight).saturating_sub(self.options.free().len())
     }

@@ -1,4 +1,4 @@
-//! Fits that a few bad readings cannot pull away: Huber's and Tukey's loss instead of the square.
+//! Fits that are robust against outliers, with the loss of Huber or of Tukey instead of the square.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,26 +7,28 @@ use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
+use crate::format::ParseError;
 use crate::model::Parameter;
 use crate::objective::{Objective, ROUNDING};
 use crate::progress::Progress;
 use crate::solver::polish;
 
-/// Beyond so many standard deviations Huber's loss grows linearly: 95 % as efficient as least
-/// squares where the errors are normal (Huber 1981).
+/// The number of standard deviations beyond which Huber's loss grows linearly. With it the estimate is
+/// 95 % as efficient as least squares for normal errors (Huber, "Robust Statistics", 1981).
 const HUBER: f64 = 1.345;
 
-/// Beyond so many standard deviations Tukey's loss is constant: 95 % as efficient as least squares
-/// where the errors are normal (Beaton and Tukey 1974). Readings beyond it are called rejected.
+/// The number of standard deviations beyond which Tukey's loss is constant, and readings are called
+/// rejected. With it the estimate is 95 % as efficient as least squares for normal errors (Beaton and
+/// Tukey, Technometrics 16, 147, 1974).
 pub const REJECTED: f64 = 4.685;
 
-/// The median of the absolute value of a normal variable of standard deviation 1.
+/// The median of the absolute value of a standard normal variable.
 const NORMAL_MEDIAN: f64 = 0.674_489_75;
 
-/// Weights are refined so many times at the most.
+/// The largest number of reweightings.
 const MOST_ROUNDS: usize = 200;
 
-/// The weights have settled when no parameter moves by more than this fraction.
+/// The weights have converged when no parameter changes by more than this fraction.
 const SETTLED: f64 = 1e-9;
 
 /// A loss that grows less than the square for large residuals.
@@ -49,19 +51,21 @@ impl fmt::Display for Loss {
 }
 
 impl FromStr for Loss {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         match text {
             "huber" => Ok(Self::Huber),
             "tukey" => Ok(Self::Tukey),
-            _ => Err(format!("\"{text}\": expected huber or tukey")),
+            _ => Err(ParseError::new(format!(
+                "\"{text}\": expected huber or tukey"
+            ))),
         }
     }
 }
 
 impl Loss {
-    /// The derivative of weight times deviations by the deviations.
+    /// The derivative of weight times deviation with respect to the deviation.
     fn slope(self, deviations: f64) -> f64 {
         let x = deviations.abs();
         match self {
@@ -74,7 +78,7 @@ impl Loss {
         }
     }
 
-    /// The weight of a reading whose residual is so many standard deviations.
+    /// The weight of a reading, from its residual in standard deviations.
     fn weight(self, deviations: f64) -> f64 {
         let x = deviations.abs();
         match self {
@@ -85,39 +89,39 @@ impl Loss {
     }
 }
 
-/// What a robust fit did.
+/// The result of a robust fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RobustFit {
     /// The loss.
     pub loss: Loss,
-    /// Standard deviation of the residuals by their median: of sqrt(g) (f - f_model) cos theta, as
-    /// a fraction of the root of the denominator of E.
+    /// The robust standard deviation of the residuals sqrt(g) (f - f_model) cos theta, from the median
+    /// of their absolute values, as a fraction of the root of the denominator of E.
     pub scale: f64,
-    /// E of the plain least squares fit, in percent.
+    /// E of the least squares fit in percent.
     pub least_squares_e_percent: f64,
-    /// What E over the degrees of freedom is to be multiplied by to have the variance of the terms,
-    /// now that the weights follow the residuals: Huber's covariance of an M-estimate.
+    /// The factor that converts E over the degrees of freedom into the variance of the residuals, where
+    /// the weights depend on the residuals: Huber's covariance of an M-estimate.
     pub variance_factor: f64,
-    /// How many readings weigh less than 1/2 by the loss.
+    /// The number of readings with a weight below 1/2.
     pub reduced: usize,
-    /// The readings that are more than 4.685 standard deviations off, the farthest first.
+    /// The readings with residuals beyond 4.685 standard deviations, the largest first.
     pub rejected: Vec<Rejected>,
 }
 
 /// A reading that a robust fit rejects.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rejected {
-    /// Its index among the readings of the scan.
+    /// The index of the reading in the scan.
     pub reading: usize,
-    /// How many standard deviations it is off: measured less model.
+    /// Measured less model, in standard deviations.
     pub deviations: f64,
 }
 
-/// The minimum under a loss next to that of least squares, by least squares that are weighted anew
-/// with the residuals until nothing moves; the objective with the last weights; and what it did.
+/// The minimum under a robust loss next to that of least squares, by iteratively reweighted least
+/// squares. Returns the parameters, the objective with the last weights, and a summary.
 ///
-/// The scale is the median of the absolute residuals, by which a normal variable has the standard
-/// deviation 1. Tukey's loss has several minima: it starts from Huber's and keeps its scale.
+/// The scale is the median of the absolute residuals, normalised for normal errors. Tukey's loss has
+/// several minima: its fit starts from that of Huber's loss and keeps its scale.
 pub(crate) fn fit_robustly(
     objective: &Objective,
     loss: Loss,
@@ -178,7 +182,7 @@ fn reweighted_fit(
             scale = 0.0;
             break;
         }
-        // Where the loss takes every reading's say, the last weights stay.
+        // If the loss gives every reading zero weight, the last weights are kept.
         let Ok(next) = objective.reweighted(|row| loss.weight(residuals[row].0 / scale)) else {
             break;
         };
@@ -199,8 +203,8 @@ fn reweighted_fit(
     Ok((at, weighted, scale))
 }
 
-/// See [`RobustFit::variance_factor`]: the mean square of weight times deviation over the square of
-/// its mean slope, against what weighted least squares would take for it.
+/// [`RobustFit::variance_factor`]: the mean square of weight times deviation over the square of its
+/// mean slope, relative to the value that weighted least squares implies.
 fn variance_factor(loss: Loss, deviations: &[f64]) -> f64 {
     let mean = |of: &dyn Fn(f64) -> f64| {
         deviations.iter().map(|&d| of(d)).sum::<f64>() / deviations.len() as f64
@@ -216,8 +220,8 @@ fn variance_factor(loss: Loss, deviations: &[f64]) -> f64 {
     }
 }
 
-/// The standard deviation by the median of the absolute residuals of those that have a say, which
-/// the free parameters have made smaller.
+/// The standard deviation from the median of the absolute residuals of the readings with weight,
+/// corrected for the number of free parameters.
 fn median_scale(objective: &Objective, residuals: &[(f64, f64)], free: usize) -> f64 {
     let (_, diffuse) = objective.fixed_columns();
     let rows = residuals.iter().zip(diffuse);

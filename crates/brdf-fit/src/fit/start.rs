@@ -1,5 +1,5 @@
-//! The paper's initial values: both weights from the readings in the mirror direction, the width
-//! from the angle at which a peak has fallen to half.
+//! The initial values of the paper (section 3): both weights from the readings in the mirror
+//! direction, the width from the angle at which a peak has fallen to half its height.
 
 use std::fmt;
 
@@ -14,18 +14,18 @@ use crate::objective::{Objective, ProfileSums};
 use crate::progress::{Cancelled, Progress};
 use crate::scan::{Incidence, Measurement};
 
-/// Two readings that bracket the mirror direction are interpolated if they are no farther apart
-/// than this, in radians (10 deg): the step of a usual scan, and then some.
+/// Two readings on either side of the mirror direction are interpolated if their distance is at most
+/// this, in radians (10 deg, more than the step of a usual scan).
 const LARGEST_GAP: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
-/// Initial values of the parameters, and the way they were found.
+/// The initial values of the parameters, and how they were found.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct InitialValues {
     /// k2, kD and k1.
     pub parameters: Parameters,
-    /// Where the weights come from; `None` for values that the caller gave.
+    /// The origin of the weights; `None` for values that the caller gave.
     pub weights: Option<WeightsRoute>,
-    /// Where the width comes from; `None` for a value that the caller gave.
+    /// The origin of the width; `None` for a value that the caller gave.
     pub width: Option<WidthRoute>,
 }
 
@@ -33,11 +33,12 @@ pub struct InitialValues {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WeightsRoute {
-    /// The paper's steps 1 and 2, with the reading at normal incidence and view.
+    /// Steps 1 and 2 of the paper, with the reading at normal incidence and view.
     NormalReading,
-    /// No such reading: linear least squares over the readings in the mirror direction.
+    /// Linear least squares over the readings in the mirror direction, as there is no reading at normal
+    /// incidence and view.
     MirrorReadings,
-    /// Too few of those: the best weights over all readings of the stage.
+    /// The best weights over all readings of the stage, as there are too few mirror readings.
     WholeScan,
 }
 
@@ -45,9 +46,9 @@ pub enum WeightsRoute {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum WidthRoute {
-    /// The paper's step 3: eq. (4) solved where a peak has fallen to half.
+    /// Step 3 of the paper: eq. (4) solved where a peak has fallen to half its height.
     HalfHeight,
-    /// No peak falls to half: the best width over all readings of the stage.
+    /// The best width over all readings of the stage, as no peak falls to half its height.
     WholeScan,
 }
 
@@ -73,7 +74,8 @@ impl fmt::Display for InitialValues {
     }
 }
 
-/// The readings of one incidence in its plane, ascending in the signed view angle.
+/// The readings of one incidence in the plane of incidence, in ascending order of the signed view
+/// angle.
 struct Section {
     psi: f64,
     /// Signed theta in radians, f_r in 1/sr.
@@ -94,13 +96,13 @@ impl Section {
         }
     }
 
-    /// f_r exactly in the mirror direction.
+    /// The reading exactly in the mirror direction.
     fn exact_mirror_reading(&self) -> Option<f64> {
         let found = self.points.iter().find(|(theta, _)| *theta == -self.psi);
         found.map(|(_, f)| *f)
     }
 
-    /// f_r in the mirror direction: read there, or between two readings that are near enough.
+    /// f_r in the mirror direction: the reading there, or interpolated between two close readings.
     fn mirror_reading(&self) -> Option<f64> {
         if let Some(exact) = self.exact_mirror_reading() {
             return Some(exact);
@@ -135,8 +137,8 @@ fn interpolate(left: (f64, f64), right: (f64, f64), x: f64) -> f64 {
     left.1 + (right.1 - left.1) * (x - left.0) / (right.0 - left.0)
 }
 
-/// The initial values for the readings of some incidences, with the objective over the same ones.
-/// They are those of the paper's model, whichever family the objective is of.
+/// The initial values for the readings of some incidences, with the objective over the same readings.
+/// They are those of the paper's model for every family of the objective.
 pub(crate) fn initial_values(
     readings: &[Measurement],
     incidences: &[Incidence],
@@ -183,7 +185,7 @@ fn weights_of_mirror_readings(
         .iter()
         .filter_map(|s| Some((factor(s.psi), std::f64::consts::PI * s.mirror_reading()?)))
         .collect();
-    // Everything hangs on this one reading: between two others that flank a peak it would be low.
+    // An interpolated value would be too low at a peak, and all initial values depend on it.
     let normal = sections
         .iter()
         .find(|s| s.psi == 0.0)
@@ -254,7 +256,7 @@ fn width_at_half_height(
 }
 
 /// Eq. (4) solved for k1 where f_r has the given level:
-/// k1^2 = F tan^2 alpha / (sec alpha - F), with F the value of f(alpha)/f(0) that it takes.
+/// k1^2 = F tan^2 alpha / (sec alpha - F), where F is the value of f(alpha)/f(0) at that level.
 fn width_from_level(
     psi: f64,
     theta: f64,

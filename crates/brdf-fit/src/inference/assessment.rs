@@ -349,7 +349,7 @@ fn rung(
 ) -> Result<Candidate, FitError> {
     let options = FitOptions {
         start: None,
-        ..options.of_model(model)
+        ..options.with_model(model)
     };
     let fitted = fit_scan(scan, &options, progress)?;
     let (fit, objective, search) = (

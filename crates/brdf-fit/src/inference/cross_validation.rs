@@ -82,7 +82,7 @@ fn fit_of_others(
     left_out: usize,
     progress: &Progress<'_>,
 ) -> Result<Option<ModelParameters>, Cancelled> {
-    progress.pass()?;
+    progress.advance()?;
     let folds = objective.folds();
     let others = objective.subset(|i| i % folds != left_out).ok();
     let Some(others) = others.filter(|others| others.suffices_for(model.free())) else {
@@ -154,7 +154,7 @@ fn resample(
     times: &[f64],
     progress: &Progress<'_>,
 ) -> Result<Option<ModelParameters>, Cancelled> {
-    progress.pass()?;
+    progress.advance()?;
     let mut factors = vec![0.0; objective.len()];
     let segments = objective.segments().iter();
     for (segment, times) in segments.zip(times.iter().cycle()) {

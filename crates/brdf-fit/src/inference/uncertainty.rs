@@ -426,7 +426,7 @@ impl Profiler<'_> {
     }
 
     fn knowledge(&self, parameter: Parameter) -> Result<Knowledge, Cancelled> {
-        self.progress.pass()?;
+        self.progress.advance()?;
         let open = Interval {
             from: None,
             to: None,

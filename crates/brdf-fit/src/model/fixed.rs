@@ -8,9 +8,9 @@ use brdf_core::{Family, ModelParameters};
 use serde::{Deserialize, Serialize};
 
 use super::{Model, Parameter};
-use crate::format::shortest;
+use crate::format::{ParseError, shortest};
 
-/// Which parameters are fixed, and at which value. In JSON a map: `{"k1": 0.2}`.
+/// The parameters that are fixed, with their values. In JSON a map: `{"k1": 0.2}`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(into = "BTreeMap<Parameter, f64>", from = "BTreeMap<Parameter, f64>")]
 pub struct FixedParameters {
@@ -43,11 +43,15 @@ pub enum FixedError {
     },
 }
 
-/// The values that a parameter can take, in words.
+/// The range of a parameter in words.
 fn in_range(parameter: Parameter) -> String {
     match parameter.range() {
-        (lowest, f64::INFINITY) => format!("a number from {lowest} on"),
-        (lowest, highest) => format!("one from {} to {}", shortest(lowest), shortest(highest)),
+        (lowest, f64::INFINITY) => format!("a number of at least {lowest}"),
+        (lowest, highest) => format!(
+            "a number from {} to {}",
+            shortest(lowest),
+            shortest(highest)
+        ),
     }
 }
 
@@ -57,14 +61,14 @@ impl FixedParameters {
         Self::default()
     }
 
-    /// With one parameter more, or fixed at another value.
+    /// The same with one parameter fixed at a value.
     #[must_use]
     pub fn with(mut self, parameter: Parameter, value: f64) -> Self {
         self.values[parameter as usize] = Some(value);
         self
     }
 
-    /// The value at which a parameter is fixed.
+    /// The value at which a parameter is fixed, if it is.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         self.values[parameter as usize]
     }
@@ -80,7 +84,7 @@ impl FixedParameters {
         values.filter_map(|(parameter, value)| Some((parameter, value?)))
     }
 
-    /// Those that a model would otherwise fit.
+    /// The fixed parameters that the model would otherwise fit.
     #[must_use]
     pub fn within(&self, model: Model) -> Self {
         self.iter()
@@ -88,7 +92,7 @@ impl FixedParameters {
             .collect()
     }
 
-    /// That the model has each of them free, and that each value is in its range.
+    /// Checks that the model fits each of these parameters, and that each value is in its range.
     pub(crate) fn check(&self, model: Model) -> Result<(), FixedError> {
         for (parameter, value) in self.iter() {
             if !model.frees(parameter) {
@@ -122,7 +126,7 @@ impl From<FixedParameters> for BTreeMap<Parameter, f64> {
     }
 }
 
-/// `k1 = 0.2, kD = 0.05`, or nothing.
+/// `k1 = 0.2, kD = 0.05`; empty if no parameter is fixed.
 impl fmt::Display for FixedParameters {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words = self
@@ -132,20 +136,24 @@ impl fmt::Display for FixedParameters {
     }
 }
 
-/// `k1=0.2,kD=0.05`: names as in the tables, in capitals or not.
+/// From `k1=0.2,kD=0.05`; the case of the names is ignored.
 impl FromStr for FixedParameters {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         let mut fixed = Self::none();
         for entry in text.split(',') {
             let (name, value) = entry.split_once('=').unwrap_or((entry, ""));
             let parameter = name.trim().parse()?;
             let value = value.trim().parse().map_err(|_| {
-                format!("\"{entry}\": expected NAME=VALUE with a number, such as k1=0.2")
+                ParseError::new(format!(
+                    "\"{entry}\": expected NAME=VALUE with a number, such as k1=0.2"
+                ))
             })?;
             if fixed.get(parameter).is_some() {
-                return Err(format!("\"{text}\": {parameter} is fixed twice"));
+                return Err(ParseError::new(format!(
+                    "\"{text}\": {parameter} is given twice"
+                )));
             }
             fixed = fixed.with(parameter, value);
         }
@@ -153,19 +161,19 @@ impl FromStr for FixedParameters {
     }
 }
 
-/// What is fitted: a model, some of whose parameters are fixed.
+/// A model with some of its parameters fixed: the model that is fitted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReducedModel {
     model: Model,
     fixed: FixedParameters,
-    /// The parameters that are fitted, and behind them others.
+    /// The free parameters come first; the entries behind `count` are not used.
     parameters: [Parameter; Parameter::ALL.len()],
-    /// How many of them are fitted.
+    /// The number of free parameters.
     count: usize,
 }
 
 impl ReducedModel {
-    /// A model, and what is fixed of its free parameters; others are not heeded.
+    /// The model with these parameters fixed. Parameters that the model does not fit are ignored.
     pub fn new(model: Model, fixed: FixedParameters) -> Self {
         let mut parameters = Parameter::ALL;
         let mut count = 0;
@@ -192,25 +200,27 @@ impl ReducedModel {
         self.model.family()
     }
 
-    /// The parameters that are fitted, in their order.
+    /// The free parameters, in the order of [`Parameter::ALL`].
     pub fn free(&self) -> &[Parameter] {
         &self.parameters[..self.count]
     }
 
-    /// Whether a parameter is fitted.
+    /// Whether a parameter is free.
     pub fn frees(&self, parameter: Parameter) -> bool {
         self.free().contains(&parameter)
     }
 
-    /// The value that a parameter has in every fit: the one it is fixed at, or the neutral one where
-    /// the model does not have it. `None` where it is fitted, or is an index that others state.
+    /// The value of a parameter that is not free: the fixed one, or the neutral one if the model lacks
+    /// the parameter. `None` if the parameter is free, and for a refractive index that is stated
+    /// elsewhere.
     pub fn fixed(&self, parameter: Parameter) -> Option<f64> {
         self.fixed
             .get(parameter)
             .or_else(|| self.model.neutral(parameter))
     }
 
-    /// A start: what is fixed has its value, what is fitted is brought into its range.
+    /// A start for this model: fixed parameters take their values, free ones are clamped to their
+    /// ranges.
     pub fn start(&self, mut at: ModelParameters) -> ModelParameters {
         for parameter in Parameter::ALL {
             let fixed = self.fixed(parameter);
@@ -287,10 +297,10 @@ mod tests {
             ("k3=1", "is no parameter"),
             ("k1", "expected NAME=VALUE"),
             ("k1=wide", "expected NAME=VALUE"),
-            ("k1=1,k1=2", "fixed twice"),
+            ("k1=1,k1=2", "given twice"),
         ] {
             let error = text.parse::<FixedParameters>().unwrap_err();
-            assert!(error.contains(message), "{error}");
+            assert!(error.to_string().contains(message), "{error}");
         }
     }
 
@@ -326,7 +336,7 @@ mod tests {
                 Model::Three,
                 Parameter::K1,
                 2e3,
-                "k1 = 2000 cannot be fixed: expected one from",
+                "k1 = 2000 cannot be fixed: expected a number from",
             ),
             (
                 Model::Three,

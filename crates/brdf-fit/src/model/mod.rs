@@ -1,5 +1,5 @@
-//! The models that can be fitted: the paper's, its simpler and its richer relatives, and the
-//! neighbours that a user would otherwise take.
+//! The models that can be fitted: the paper's, smaller and larger models of its hierarchy, and the
+//! reference models GGX and Beckmann.
 
 mod fixed;
 
@@ -11,19 +11,21 @@ use brdf_core::facet::P_DOMAIN;
 use brdf_core::{Family, ModelParameters};
 use serde::{Deserialize, Serialize};
 
+use crate::format::ParseError;
+
 pub use fixed::{FixedError, FixedParameters, ReducedModel};
 
-/// The range of k1 in a fit. Far below the resolution of any goniometer at one end; at the other
-/// the facet distribution no longer changes (its limit is sec alpha).
+/// The range of k1 in a fit. The lower end is far below the resolution of any goniometer; at the
+/// upper end the facet distribution has reached its limit sec alpha.
 pub const K1_RANGE: (f64, f64) = (1e-6, 1e3);
 
-/// The range of a fitted refractive index: up to that of germanium and the like.
+/// The range of a fitted refractive index; the upper end lies above germanium and similar materials.
 pub const N_RANGE: (f64, f64) = (N_DOMAIN.0, 6.0);
 
-/// The refractive index where a fit of n starts when nobody says another: that of most binders.
+/// The refractive index where a fit of n starts by default: that of most binders.
 pub const DEFAULT_N: f64 = 1.5;
 
-/// One number of a model, in the order of [`ModelParameters`].
+/// A parameter of a model, in the order of [`ModelParameters`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Parameter {
@@ -43,7 +45,7 @@ impl Parameter {
     /// All parameters, in the order of [`ModelParameters`].
     pub const ALL: [Self; 5] = [Self::K2, Self::Kd, Self::K1, Self::N, Self::P];
 
-    /// The bounds of the parameter in a fit.
+    /// The range of the parameter in a fit: lower and upper bound.
     pub fn range(self) -> (f64, f64) {
         match self {
             Self::K2 | Self::Kd => (0.0, f64::INFINITY),
@@ -53,7 +55,7 @@ impl Parameter {
         }
     }
 
-    /// Its value among all parameters.
+    /// The value of this parameter in a set of parameters.
     pub fn of(self, at: &ModelParameters) -> f64 {
         match self {
             Self::K2 => at.k2,
@@ -64,7 +66,7 @@ impl Parameter {
         }
     }
 
-    /// Sets its value among all parameters.
+    /// Sets the value of this parameter in a set of parameters.
     pub fn set(self, at: &mut ModelParameters, value: f64) {
         *match self {
             Self::K2 => &mut at.k2,
@@ -88,55 +90,57 @@ impl fmt::Display for Parameter {
     }
 }
 
-/// Its name, in capitals or not.
+/// From the name of a parameter, ignoring case.
 impl FromStr for Parameter {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         Self::ALL
             .into_iter()
             .find(|parameter| parameter.to_string().eq_ignore_ascii_case(text))
             .ok_or_else(|| {
                 let names = Self::ALL.map(|parameter| parameter.to_string()).join(", ");
-                format!("\"{text}\" is no parameter: expected one of {names}")
+                ParseError::new(format!(
+                    "\"{text}\" is not a parameter: expected one of {names}"
+                ))
             })
     }
 }
 
-/// A model: a family and which of its parameters are free.
+/// A model: a family of BRDFs with its free parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
-    /// Lambertian only: kD.
+    /// The Lambertian part only: kD.
     Lambert,
-    /// Specular only: k2 and k1.
+    /// The specular part only: k2 and k1.
     Specular,
     /// The paper's three parameters.
     #[default]
     Three,
-    /// The paper's, and n free.
+    /// The paper's model with n free.
     #[serde(rename = "three+n")]
     ThreeN,
-    /// The paper's with Smith's shadowing, and n free.
+    /// The paper's facet distribution with Smith shadowing, n free.
     #[serde(rename = "smith+n")]
     SmithN,
-    /// The paper's with a free exponent, and n free.
+    /// The paper's model with a free exponent p, n free.
     #[serde(rename = "power+n")]
     PowerN,
-    /// GGX with Smith's shadowing.
+    /// GGX with Smith shadowing.
     Ggx,
-    /// GGX with Smith's shadowing, and n free.
+    /// GGX with Smith shadowing, n free.
     #[serde(rename = "ggx+n")]
     GgxN,
     /// Beckmann with V-groove shadowing.
     Beckmann,
-    /// Beckmann with V-groove shadowing, and n free.
+    /// Beckmann with V-groove shadowing, n free.
     #[serde(rename = "beckmann+n")]
     BeckmannN,
 }
 
 impl Model {
-    /// The ladder, from the smallest to the largest.
+    /// The model hierarchy, from the smallest to the largest.
     pub const HIERARCHY: [Self; 6] = [
         Self::Lambert,
         Self::Specular,
@@ -146,7 +150,7 @@ impl Model {
         Self::PowerN,
     ];
 
-    /// What is compared: the ladder from the paper's model on, and the neighbours.
+    /// The hierarchy from the paper's model on, and the reference models.
     pub const WITH_REFERENCES: [Self; 8] = [
         Self::Three,
         Self::ThreeN,
@@ -172,7 +176,7 @@ impl Model {
         Self::BeckmannN,
     ];
 
-    /// The family.
+    /// The family of BRDFs.
     pub fn family(self) -> Family {
         match self {
             Self::Lambert | Self::Specular | Self::Three | Self::ThreeN => Family::Paper,
@@ -200,8 +204,8 @@ impl Model {
         self.free().contains(&parameter)
     }
 
-    /// The value of a parameter that the model does not have, as if it had it: `None` where it is
-    /// free, and for the index, which others state.
+    /// The value at which a parameter that the model lacks has no effect. `None` if the parameter is
+    /// free, and for the refractive index, which is stated elsewhere.
     pub fn neutral(self, parameter: Parameter) -> Option<f64> {
         match parameter {
             _ if self.frees(parameter) => None,
@@ -211,12 +215,12 @@ impl Model {
         }
     }
 
-    /// A start of this model: the parameters that it does not have take their neutral values.
+    /// A start of this model: parameters that it lacks take their neutral values.
     pub fn start(self, at: ModelParameters) -> ModelParameters {
         ReducedModel::from(self).start(at)
     }
 
-    /// Its name on the command line and in files.
+    /// The name in options and files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lambert => "lambert",
@@ -232,7 +236,7 @@ impl Model {
         }
     }
 
-    /// What it is, in a few words.
+    /// A short description.
     pub fn description(self) -> &'static str {
         match self {
             Self::Lambert => "Lambertian only",
@@ -256,15 +260,15 @@ impl fmt::Display for Model {
 }
 
 impl FromStr for Model {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         Self::ALL
             .into_iter()
             .find(|model| model.name() == text)
             .ok_or_else(|| {
                 let names = Self::ALL.map(Self::name).join(", ");
-                format!("\"{text}\": expected one of {names}")
+                ParseError::new(format!("\"{text}\": expected one of {names}"))
             })
     }
 }

@@ -1,17 +1,17 @@
-//! The readings of a table in fewer rows, without a loss.
+//! The readings of a table in fewer rows, without loss.
 //!
-//! Facet distribution and Fresnel factor are the same for all readings of one alpha and one gamma,
-//! and the V-groove shadowing does not depend on parameters. With the columns y, a and
+//! The facet distribution and the Fresnel factor are the same for all readings with the same alpha
+//! and gamma, and the V-groove shadowing does not depend on parameters. With the columns y, a and
 //! s = a G/(cos psi cos theta) of such readings, E is the sum of
 //!
 //! ```text
 //! |y - kD a - k2 f(alpha)/f(0) R0(gamma) s|^2
 //! ```
 //!
-//! a length that does not change when the rows (a, s, y) are turned into each other: to the
-//! triangle of their QR decomposition, three rows however many they were. So E, its derivatives and
-//! all scalar products of columns are the same, but for roundings. A MERL table, 180 readings of
-//! which have one alpha and one gamma, comes down to an eighth.
+//! which is invariant under rotations of the rows (a, s, y). They are replaced by the three rows of
+//! the triangle of their QR decomposition, so that E, its derivatives and all scalar products of
+//! columns are the same within rounding. A MERL table, in which 180 readings have one alpha and one
+//! gamma, is reduced to an eighth of its rows.
 
 use brdf_core::shadowing::{Shadowing as _, VGroove};
 use brdf_core::{Family, Geometry, GeometryError};
@@ -22,7 +22,7 @@ use super::rows::{Angles, Objective, Segment};
 use super::weights::Weights;
 use crate::scan::{Incidence, Measurement, Measurements};
 
-/// Angles of a table's bins differ by more than this fraction, and by less where they are the same.
+/// The relative difference below which the angles of two bins are equal within rounding.
 const SAME: f64 = 1e-9;
 
 /// The condensed rows of one incidence.
@@ -97,7 +97,7 @@ impl Objective {
             return Self::new(measurements, family, n, weights);
         }
         let weights = weights
-            .of_all(measurements)
+            .for_readings(measurements)
             .ok_or(ObjectiveError::NoSigma)?;
         let readings = measurements.readings();
         let row = |i: usize, geometry: &Geometry| {
@@ -120,7 +120,7 @@ impl Objective {
         objective.normalised()
     }
 
-    /// Takes the rows of an incidence.
+    /// Appends the rows of an incidence.
     fn append(&mut self, psi: f64, rows: Rows) {
         let start = self.len();
         self.measured.extend(rows.measured);
@@ -145,7 +145,7 @@ impl Angles {
     }
 }
 
-/// The triangle that rows have been turned into.
+/// The triangle of the QR decomposition of rows.
 struct Triangle([[f64; 3]; 3]);
 
 impl Triangle {
@@ -153,7 +153,7 @@ impl Triangle {
         Self([row, [0.0; 3], [0.0; 3]])
     }
 
-    /// Turns a row into the triangle, column by column (Givens).
+    /// Adds a row to the triangle by Givens rotations.
     fn add(&mut self, mut row: [f64; 3]) {
         for (column, upper) in self.0.iter_mut().enumerate() {
             if row[column] == 0.0 {

@@ -133,7 +133,7 @@ impl Objective {
     ) -> Result<Self, ObjectiveError> {
         let incidences = measurements.incidences();
         let weights = weights
-            .of_all(measurements)
+            .for_readings(measurements)
             .ok_or(ObjectiveError::NoSigma)?;
         let mut objective = Self::with_capacity(family, n, weights.len());
         for incidence in &incidences {

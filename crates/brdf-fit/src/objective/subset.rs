@@ -4,23 +4,31 @@ use super::error::ObjectiveError;
 use super::rows::{Objective, Segment};
 
 impl Objective {
-    /// The objective over some of the incidences: those whose index `keep` accepts.
+    /// The objective over the incidences whose index `keep` accepts.
+    ///
+    /// # Errors
+    ///
+    /// E is not defined for these incidences.
     pub(crate) fn subset(&self, keep: impl Fn(usize) -> bool) -> Result<Self, ObjectiveError> {
         let segments = self.segments.iter().enumerate();
         let kept = segments.filter(|(i, _)| keep(*i));
         self.picked(kept.map(|(_, segment)| segment), 1)
     }
 
-    /// The objective over at most about `limit` of the rows, evenly over each incidence.
+    /// The objective over about `limit` rows at most, evenly spaced within each incidence.
+    ///
+    /// # Errors
+    ///
+    /// E is not defined for these rows.
     pub(crate) fn thinned(&self, limit: usize) -> Result<Self, ObjectiveError> {
         let step = self.len().div_ceil(limit);
-        // Condensed rows come in threes, a triangle of each cell: the same row of each would stand
-        // for no readings.
+        // Condensed rows come in threes, the triangle of each cell. A step of a multiple of three
+        // would take the same row of each triangle, which represents no readings.
         let of_threes = self.readings.is_empty() && step.is_multiple_of(3);
         self.picked(self.segments.iter(), step + usize::from(of_threes))
     }
 
-    /// The objective over every so many of the rows of the given incidences.
+    /// The objective over every `step`-th row of the given incidences.
     fn picked<'a>(
         &self,
         segments: impl Iterator<Item = &'a Segment>,
@@ -52,6 +60,10 @@ impl Objective {
     }
 
     /// The objective with the weight of each row multiplied by a factor >= 0.
+    ///
+    /// # Errors
+    ///
+    /// E is not defined with these weights.
     pub(crate) fn reweighted(&self, factor: impl Fn(usize) -> f64) -> Result<Self, ObjectiveError> {
         let mut objective = self.clone();
         for i in 0..self.len() {

@@ -7,11 +7,11 @@ use std::str::FromStr;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-use crate::format::{as_degrees, in_degrees};
+use crate::format::{ParseError, as_degrees, in_degrees};
 use crate::scan::{Measurement, Measurements};
 
-/// A weight that is a function of one angle: linear between the listed angles, constant beyond the
-/// first and the last, 1 everywhere where the list is empty.
+/// A weight as a function of one angle: linear between the listed angles, constant beyond the first
+/// and the last, and 1 for an empty list.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct AngleWeight {
     /// Angle in degrees and weight >= 0, ascending by angle.
@@ -34,11 +34,11 @@ impl AngleWeight {
     }
 }
 
-/// `60=1,70=0.5`: degrees and weights, in ascending order of the degrees.
+/// From `60=1,70=0.5`: degrees and weights, in ascending order of the degrees.
 impl FromStr for AngleWeight {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         let points_deg: Vec<(f64, f64)> = text
             .split(',')
             .map(|entry| {
@@ -50,19 +50,23 @@ impl FromStr for AngleWeight {
                         angle.is_finite() && *weight >= 0.0 && weight.is_finite()
                     })
                     .ok_or_else(|| {
-                        format!("\"{entry}\": expected DEGREES=WEIGHT with a weight >= 0, such as 60=1,70=0.5")
+                        ParseError::new(format!(
+                            "\"{entry}\": expected DEGREES=WEIGHT with a weight >= 0, such as 60=1,70=0.5"
+                        ))
                     })
             })
             .collect::<Result<_, _>>()?;
         if points_deg.windows(2).any(|pair| pair[0].0 >= pair[1].0) {
-            return Err(format!("\"{text}\": the angles must ascend"));
+            return Err(ParseError::new(format!(
+                "\"{text}\": the angles must ascend"
+            )));
         }
         Ok(Self { points_deg })
     }
 }
 
-/// The weight of each reading in E: g1(psi) g2(theta), times 1/sigma^2 or the solid angle where
-/// asked for, and 0 where a mask leaves it out.
+/// The weights of the readings in E: g = g1(psi) g2(theta), multiplied by 1/sigma^2 or by the solid
+/// angle if requested, and 0 for masked readings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Weights {
     /// g1 of eq. (5), over the incidence angle psi.
@@ -72,20 +76,19 @@ pub struct Weights {
     /// Multiply by 1/sigma^2 of each reading.
     #[serde(default)]
     pub by_sigma: bool,
-    /// Multiply by the solid angle that each reading stands for: see [`solid_angles`].
+    /// Multiply by the solid angle that each reading represents: see [`solid_angles`].
     #[serde(default)]
     pub by_solid_angle: bool,
-    /// Leave out readings that look less than this away from the source, in radians (in JSON in
-    /// degrees): there the detector blocks the light, or its scatter is measured.
+    /// Mask readings closer to the source direction than this angle, in radians (in JSON in degrees):
+    /// the detector blocks the light there, or scatters it.
     #[serde(default, rename = "mask_source_deg", with = "as_degrees")]
     pub mask_source: f64,
-    /// Leave out readings that look less than this away from the mirror direction, in radians (in
-    /// JSON in degrees).
+    /// Mask readings closer to the mirror direction than this angle, in radians (in JSON in degrees).
     #[serde(default, rename = "mask_mirror_deg", with = "as_degrees")]
     pub mask_mirror: f64,
 }
 
-/// Which weights there are besides 1: `g1(psi), 1/sigma^2`, or nothing.
+/// The weights in use, such as `g1(psi), 1/sigma^2`; empty if all weights are 1.
 impl fmt::Display for Weights {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let word = |used: bool, word: &str| used.then(|| word.to_owned());
@@ -106,8 +109,8 @@ impl fmt::Display for Weights {
 }
 
 impl Weights {
-    /// The weights of all readings; `None` where sigma is asked for and a reading has none.
-    pub fn of_all(&self, measurements: &Measurements) -> Option<Vec<f64>> {
+    /// The weights of all readings; `None` if 1/sigma^2 is requested and a reading has no sigma.
+    pub fn for_readings(&self, measurements: &Measurements) -> Option<Vec<f64>> {
         let readings = measurements.readings();
         let mut weights: Vec<f64> = readings
             .iter()
@@ -123,8 +126,8 @@ impl Weights {
         Some(weights)
     }
 
-    /// The weight of one reading but for its solid angle; `None` where sigma is asked for and the
-    /// reading has none.
+    /// The weight of one reading without its solid angle; `None` if 1/sigma^2 is requested and the
+    /// reading has no sigma.
     fn of(&self, reading: &Measurement) -> Option<f64> {
         if self.masks(reading) {
             return Some(0.0);
@@ -142,7 +145,7 @@ impl Weights {
         if self.mask_source <= 0.0 && self.mask_mirror <= 0.0 {
             return false;
         }
-        // Turned by half a turn about the normal, the mirror direction is where the source was.
+        // A half turn about the normal maps the mirror direction to the source direction.
         let angle_to = |phi: f64| {
             let source = direction(reading.psi, 0.0);
             source.angle(&direction(reading.theta, phi))
@@ -156,11 +159,11 @@ fn direction(zenith: f64, azimuth: f64) -> Vector3<f64> {
     Vector3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos)
 }
 
-/// The solid angle in sr that each reading stands for among those of its incidence.
+/// The solid angle in sr that each reading represents among those of its incidence.
 ///
-/// The hemisphere of views is cut half way between neighbours: first into sectors of azimuth around
-/// the half-planes with readings, each sector then into rings between half the way to the next
-/// smaller and half the way to the next larger theta; the outermost ring reaches as far out as in.
+/// The hemisphere of view directions is divided half way between adjacent readings: into sectors of
+/// azimuth around the half-planes with readings, and each sector into rings of theta. The outermost
+/// ring extends outwards as far as inwards.
 pub fn solid_angles(measurements: &Measurements) -> Vec<f64> {
     let readings = measurements.readings();
     let mut angles = vec![0.0; readings.len()];
@@ -184,11 +187,11 @@ pub fn solid_angles(measurements: &Measurements) -> Vec<f64> {
     angles
 }
 
-/// Azimuths within this of each other are one half-plane, in radians (0.05 deg).
+/// Azimuths that differ by less than this are one half-plane, in radians (0.05 deg).
 const SAME_AZIMUTH: f64 = 0.05 * PI / 180.0;
 
-/// Azimuth in [0, 2 pi) and readings of each half-plane, ascending. A view along the normal has no
-/// azimuth of its own and belongs to the first.
+/// The azimuth in [0, 2 pi) and the readings of each half-plane, in ascending order. A view along the
+/// normal has no azimuth and belongs to the first half-plane.
 fn half_planes(readings: &[Measurement], members: &[usize]) -> Vec<(f64, Vec<usize>)> {
     let azimuth = |i: usize| {
         let turned = if readings[i].theta < 0.0 { PI } else { 0.0 };
@@ -216,7 +219,7 @@ fn half_planes(readings: &[Measurement], members: &[usize]) -> Vec<(f64, Vec<usi
     planes
 }
 
-/// The width of the sector around one of the azimuths, in radians.
+/// The width of the sector around an azimuth in radians.
 fn sector(azimuths: &[f64], i: usize) -> f64 {
     let count = azimuths.len();
     if count == 1 {
@@ -229,10 +232,11 @@ fn sector(azimuths: &[f64], i: usize) -> f64 {
     0.5 * (to_next(i) + to_next((i + count - 1) % count))
 }
 
-/// cos theta at the inner edge less that at the outer, for each of the ascending zenith angles.
+/// The difference of cos theta between the inner and the outer edge of the ring of each zenith
+/// angle; the angles ascend.
 fn rings(thetas: &[f64]) -> Vec<f64> {
     let last = thetas.len() - 1;
-    // The normal alone stands for all of its sector.
+    // A single reading at the normal represents its whole sector.
     if thetas[last] == 0.0 {
         return vec![1.0 / thetas.len() as f64; thetas.len()];
     }
@@ -277,10 +281,10 @@ mod tests {
     #[test]
     fn what_is_not_a_weight_is_named() {
         let message = |text: &str| text.parse::<AngleWeight>().unwrap_err();
-        assert!(message("60").contains("\"60\""));
-        assert!(message("60=-1").contains("\"60=-1\""));
-        assert!(message("60=x").contains("\"60=x\""));
-        assert!(message("60=1,50=1").contains("ascend"));
+        assert!(message("60").to_string().contains("\"60\""));
+        assert!(message("60=-1").to_string().contains("\"60=-1\""));
+        assert!(message("60=x").to_string().contains("\"60=x\""));
+        assert!(message("60=1,50=1").to_string().contains("ascend"));
     }
 
     #[test]
@@ -328,7 +332,7 @@ mod tests {
             by_solid_angle: true,
             ..Weights::default()
         };
-        let sum: f64 = all.of_all(&scan).unwrap().iter().sum();
+        let sum: f64 = all.for_readings(&scan).unwrap().iter().sum();
         // The last ring ends at 85 deg; the normal takes its share from one sector alone.
         let expected = TAU * (1.0 - 85_f64.to_radians().cos());
         assert!((sum / expected - 1.0).abs() < 0.01, "{sum} {expected}");
@@ -370,7 +374,7 @@ mod tests {
             ..Weights::default()
         };
         assert_eq!(
-            weights.of_all(&scan),
+            weights.for_readings(&scan),
             Some(vec![0.0, 1.0, 0.0, 0.0, 0.0, 1.0])
         );
     }

@@ -105,7 +105,9 @@ mod tests {
         }
         let error = "x".parse::<Format>().unwrap_err();
         assert!(
-            error.contains("expected one of csv, merl, astm, "),
+            error
+                .to_string()
+                .contains("expected one of csv, merl, astm, "),
             "{error}"
         );
     }

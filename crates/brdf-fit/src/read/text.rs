@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::ReadError;
+use crate::format::ParseError;
 use crate::scan::Metadata;
 use crate::scan::RefractiveIndex;
 
@@ -281,7 +282,11 @@ impl Said {
         };
         match key.as_str() {
             "quantity" => set_once(&mut self.quantity, Quantity::parse(&value), &key)?,
-            "refractive_index" => set_once(&mut self.refractive_index, value.parse(), &key)?,
+            "refractive_index" => set_once(
+                &mut self.refractive_index,
+                value.parse().map_err(|error: ParseError| error.to_string()),
+                &key,
+            )?,
             _ => {}
         }
         self.metadata.0.push((key, value));

@@ -158,7 +158,12 @@ impl Report {
     ) -> Result<(), FitError> {
         // What cannot be fitted at all is told by the paper's model.
         self.model = sufficient_model(measurements, options, observer)?;
-        self.fill(measurements, &options.of_model(self.model), depth, observer)
+        self.fill(
+            measurements,
+            &options.with_model(self.model),
+            depth,
+            observer,
+        )
     }
 
     fn fill(

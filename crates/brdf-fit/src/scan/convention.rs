@@ -1,9 +1,11 @@
-//! How a file states its readings: its format, and the sides from which it counts its angles.
+//! The conventions of a file: its format, and the directions in which it counts its angles.
 
 use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
+
+use crate::format::ParseError;
 
 /// A format of files with measured values.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,7 +16,7 @@ pub enum Format {
     Csv,
     /// A MERL table: [`read::merl`](crate::read::merl).
     Merl,
-    /// ASTM E1392 and E2387 text, also as Cornell wrote it: [`read::astm`](crate::read::astm).
+    /// ASTM E1392 and E2387 text, including the layout of Cornell: [`read::astm`](crate::read::astm).
     Astm,
     /// Zemax tabular BSDF: [`read::zemax`](crate::read::zemax).
     Zemax,
@@ -25,7 +27,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// All formats, with the names that options and files give them.
+    /// All formats, with their names in options and files.
     pub const NAMED: [(Self, &str); 6] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
@@ -35,7 +37,7 @@ impl Format {
         (Self::Goniometer, "goniometer"),
     ];
 
-    /// The name that options and files give it.
+    /// The name in options and files.
     pub fn name(self) -> &'static str {
         let found = Self::NAMED.iter().find(|(format, _)| *format == self);
         found.map_or("", |(_, name)| name)
@@ -47,36 +49,40 @@ impl Format {
 }
 
 impl FromStr for Format {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         let found = Self::NAMED.iter().find(|(_, name)| *name == text);
         found.map(|(format, _)| *format).ok_or_else(|| {
             let names = Self::names();
-            format!("\"{text}\" is not a format: expected one of {names}")
+            ParseError::new(format!(
+                "\"{text}\" is not a format: expected one of {names}"
+            ))
         })
     }
 }
 
-/// Which side of the surface normal, or which azimuth, a file calls positive or zero.
+/// The side of the surface normal that a file counts as positive, or as azimuth zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {
-    /// The source's side: the model's convention.
+    /// The side of the source: the convention of the model.
     #[default]
     Source,
-    /// The side of the mirror direction: as in ASTM E2387 and most goniometers.
+    /// The side of the mirror direction, as in ASTM E2387 and on most goniometers.
     Forward,
 }
 
 impl FromStr for Side {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         match text {
             "source" => Ok(Self::Source),
             "forward" => Ok(Self::Forward),
-            _ => Err(format!("\"{text}\": expected source or forward")),
+            _ => Err(ParseError::new(format!(
+                "\"{text}\": expected source or forward"
+            ))),
         }
     }
 }
@@ -84,20 +90,20 @@ impl FromStr for Side {
 /// The angular convention of a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Convention {
-    /// The side on which theta counts positive.
+    /// The side on which theta is positive.
     pub theta_positive: Side,
     /// The side on which phi is zero.
     pub phi_zero: Side,
 }
 
 impl Convention {
-    /// Theta and phi in radians in the model's convention, from degrees in this one.
+    /// Theta and phi in radians in the convention of the model, from degrees in this convention.
     pub(crate) fn in_model(self, theta_deg: f64, phi_deg: f64) -> (f64, f64) {
         let theta = match self.theta_positive {
             Side::Source => theta_deg,
             Side::Forward => -theta_deg,
         };
-        // In degrees, so that 180 deg remains what it is.
+        // The sum is taken in degrees, where it is exact.
         let phi = match self.phi_zero {
             Side::Source => phi_deg,
             Side::Forward => phi_deg + 180.0,
@@ -106,7 +112,7 @@ impl Convention {
     }
 }
 
-/// What differs from the model's convention, in words; nothing where it is that.
+/// The differences from the convention of the model; empty if there are none.
 impl fmt::Display for Convention {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.theta_positive, self.phi_zero) {

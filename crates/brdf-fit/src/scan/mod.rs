@@ -1,4 +1,4 @@
-//! Readings of a goniometer, validated and in the model's convention.
+//! The scan: readings of a goniometer, validated and in the convention of the model.
 
 mod convention;
 mod refractive_index;
@@ -16,28 +16,29 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use brdf_core::{Geometry, GeometryError};
 use serde::{Deserialize, Serialize};
 
-/// One reading. Angles in radians in the model's convention: a positive theta at phi = 0 is the
-/// source's side of the normal.
+/// One reading. Angles are in radians and in the convention of the model: positive theta at phi = 0
+/// is on the side of the source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
-    /// Wavelength in micrometres, where the scan states one.
+    /// Wavelength in micrometres, if the scan states one.
     pub wavelength_um: Option<f64>,
     /// Incidence zenith angle psi in [0, pi/2).
     pub psi: f64,
     /// View zenith angle theta in (-pi/2, pi/2), signed.
     pub theta: f64,
-    /// View azimuth phi from the source's azimuth.
+    /// View azimuth phi, measured from the azimuth of the source.
     pub phi: f64,
-    /// Measured f_r in 1/sr; negative values are noise and are kept.
+    /// Measured f_r in 1/sr. Negative values are noise and are kept.
     pub brdf: f64,
-    /// Standard deviation of the reading in 1/sr, where the scan states one.
+    /// Standard deviation of the reading in 1/sr, if the scan states one.
     pub sigma: Option<f64>,
 }
 
-/// Why a reading is refused.
+/// Why a reading is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeasurementError {
-    /// Angles outside the model's domain.
+    /// Angles outside the domain of the model.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
     /// A wavelength that is not positive.
@@ -52,7 +53,11 @@ pub enum MeasurementError {
 }
 
 impl Measurement {
-    /// Checks the domain of every value.
+    /// The reading, after a check of the domain of each value.
+    ///
+    /// # Errors
+    ///
+    /// The first value outside its domain.
     pub fn validated(self) -> Result<Self, MeasurementError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !(0.0..=FRAC_PI_2).contains(&self.psi) {
@@ -77,18 +82,22 @@ impl Measurement {
     }
 
     /// The geometry of the reading.
+    ///
+    /// # Errors
+    ///
+    /// Angles outside the domain of the model.
     pub fn geometry(&self) -> Result<Geometry, GeometryError> {
         Geometry::new(self.psi, self.theta, self.phi)
     }
 
-    /// The signed view angle in the plane of incidence, in radians; `None` out of the plane, by
-    /// more than 1e-6 rad of azimuth.
+    /// The signed view angle in the plane of incidence, in radians; `None` if the azimuth is more than
+    /// 1e-6 rad out of the plane.
     pub fn in_plane_theta(&self) -> Option<f64> {
         self.theta_within(0.0, 1e-6)
     }
 
-    /// The signed view angle in radians in the vertical plane through an azimuth, positive on its
-    /// side; `None` out of that plane, by more than an instrument's 0.05 deg of azimuth.
+    /// The signed view angle in the vertical plane through an azimuth, in radians and positive on the
+    /// side of the azimuth; `None` if the view is more than 0.05 deg of azimuth out of the plane.
     pub fn theta_in_plane(&self, azimuth: f64) -> Option<f64> {
         self.theta_within(azimuth, SAME_ANGLE)
     }
@@ -104,31 +113,34 @@ impl Measurement {
     }
 }
 
-/// The angle between two azimuths in radians, from 0 to pi; 0 within the rounding of degrees.
+/// The angle between two azimuths in radians, from 0 to pi; 0 if they agree within the rounding of
+/// degrees.
 pub(crate) fn angle_between(a: f64, b: f64) -> f64 {
     let turns = (a - b) / (2.0 * PI);
     let angle = (turns - turns.round()).abs() * 2.0 * PI;
     if angle < 1e-6 { 0.0 } else { angle }
 }
 
-/// Angles within this of each other are one, in radians (0.05 deg): so well an instrument sets them.
+/// Angles that differ by less than this are equal, in radians: 0.05 deg, the setting accuracy of a
+/// goniometer.
 const SAME_ANGLE: f64 = 0.05 * PI / 180.0;
 
 /// The readings of one incidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Incidence {
-    /// The (smallest) incidence angle psi in radians; the middle of a class of a table.
+    /// The smallest incidence angle psi of the readings in radians, or the centre of a class of a
+    /// table.
     pub psi: f64,
-    /// The indices of its readings, in the order of the file.
+    /// The indices of the readings, in the order of the file.
     pub readings: Vec<usize>,
 }
 
-/// What a file says of itself in its `# key: value` lines, in their order. Keys are in lower case.
+/// The `# key: value` lines of a file, in their order. Keys are in lower case.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Metadata(pub Vec<(String, String)>);
 
 impl Metadata {
-    /// The value of a key, the first one where it stands more than once.
+    /// The value of a key; the first one if the key is repeated.
     pub fn get(&self, key: &str) -> Option<&str> {
         self.0
             .iter()
@@ -137,34 +149,36 @@ impl Metadata {
     }
 }
 
-/// The readings of one scan, with what its file says of them.
+/// The readings of a scan, with the metadata of its file.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Measurements {
-    /// Where the readings come from: the path of a file, or what the caller says.
+    /// The source of the readings: the path of a file, or a name that the caller gives.
     pub source: String,
-    /// What the file says of itself.
+    /// The metadata of the file.
     pub metadata: Metadata,
-    /// The refractive index that the file gives.
+    /// The refractive index that the file states.
     pub refractive_index: Option<RefractiveIndex>,
-    /// Columns of the file that were not used.
+    /// The columns of the file that are not used.
     pub ignored_columns: Vec<String>,
-    /// The angular convention of the file; the readings here are in the model's.
+    /// The angular convention of the file. The readings here are in that of the model.
     pub convention: Convention,
     /// The format of the file.
     pub format: Format,
-    /// What was converted on the way from the file to the readings, and what was left out and how
-    /// many of it, one sentence each.
+    /// The conversions between the file and the readings, and the values that were left out with
+    /// their count, one sentence each.
     pub conversions: Vec<String>,
-    /// The width of classes of incidence angles, in radians, where the readings are of a table whose
-    /// coordinates are others.
+    /// The width of the classes of incidence angles in radians, for a table whose coordinates are not
+    /// those of a goniometer; otherwise `None`.
     pub(crate) incidence_class: Option<f64>,
     pub(crate) readings: Vec<Measurement>,
 }
 
 impl Measurements {
-    /// Measurements from readings that did not come from a file.
+    /// Measurements from readings that do not come from a file.
     ///
-    /// Errors: the first reading that is outside the domain.
+    /// # Errors
+    ///
+    /// The first reading with a value outside its domain.
     pub fn new(
         source: impl Into<String>,
         readings: Vec<Measurement>,
@@ -185,16 +199,16 @@ impl Measurements {
         &self.readings
     }
 
-    /// Whether the readings are of a table whose coordinates are not those of a goniometer.
+    /// Whether the readings come from a table whose coordinates are not those of a goniometer.
     pub(crate) fn is_table(&self) -> bool {
         self.incidence_class.is_some()
     }
 
-    /// The wavelengths in micrometres, ascending; a single `None` where the scan states none.
+    /// The wavelengths in micrometres, ascending; a single `None` if the scan states none.
     pub fn wavelengths(&self) -> Vec<Option<f64>> {
         let mut all: Vec<Option<f64>> = Vec::new();
         for reading in &self.readings {
-            // Files keep a wavelength together: most readings repeat the last one.
+            // Most readings repeat the wavelength of the one before.
             if all.last() != Some(&reading.wavelength_um) {
                 all.push(reading.wavelength_um);
             }
@@ -204,7 +218,7 @@ impl Measurements {
         all
     }
 
-    /// The readings of each wavelength by themselves, in ascending order of wavelength.
+    /// One scan for each wavelength, in ascending order.
     pub fn by_wavelength(self) -> Vec<Self> {
         let wavelengths = self.wavelengths();
         if wavelengths.len() <= 1 {
@@ -221,8 +235,8 @@ impl Measurements {
     }
 
     /// The incidences in ascending order, each with its readings. Angles that differ by less than
-    /// 0.05 deg, as an instrument sets them, are one incidence; of a table without incidences, those
-    /// of a class of 5 deg are, psi being its middle.
+    /// 0.05 deg, the setting accuracy of a goniometer, are one incidence. For a table in other
+    /// coordinates, an incidence is a class of 5 deg and psi its centre.
     pub fn incidences(&self) -> Vec<Incidence> {
         match self.incidence_class {
             None => self.set_incidences(),
@@ -265,14 +279,13 @@ impl Measurements {
         incidences
     }
 
-    /// The azimuths, in radians from 0 to below pi, of the vertical planes that hold readings, in
-    /// ascending order. Azimuths that differ by less than 0.05 deg, as an instrument sets them, are
-    /// one plane.
+    /// The azimuths of the vertical planes that contain readings, in radians from 0 to below pi, in
+    /// ascending order. Azimuths that differ by less than 0.05 deg are one plane.
     pub fn planes(&self) -> Vec<f64> {
         let oblique = self.readings.iter().filter(|reading| reading.theta != 0.0);
         let mut all: Vec<f64> = oblique
             .map(|reading| reading.phi.rem_euclid(PI))
-            // Just below pi is the plane of incidence, but for a rounding.
+            // An azimuth just below pi is the plane of incidence after rounding.
             .map(|azimuth| {
                 if PI - azimuth < SAME_ANGLE {
                     0.0
@@ -289,8 +302,8 @@ impl Measurements {
         all
     }
 
-    /// At most about `limit` of the readings, evenly over each incidence in the order of the file,
-    /// and at least one of each; of a table, [`sampled`](Self::sampled).
+    /// About `limit` readings at most, evenly spaced within each incidence in the order of the file,
+    /// and at least one of each incidence; for a table, [`sampled`](Self::sampled).
     #[must_use]
     pub fn thinned(&self, limit: usize) -> Self {
         if self.is_table() {
@@ -306,7 +319,7 @@ impl Measurements {
         self.kept(kept)
     }
 
-    /// The readings of the incidences up to an angle in radians, that angle included.
+    /// The readings with incidence angles up to `psi` in radians, inclusive.
     #[must_use]
     pub fn up_to(&self, psi: f64) -> Self {
         let incidences = self.incidences();
@@ -316,7 +329,7 @@ impl Measurements {
         self.kept(kept)
     }
 
-    /// Some of the readings, by their indices, with all that the file says of them.
+    /// The readings with the given indices, with the metadata of the file.
     pub(crate) fn kept(&self, indices: impl IntoIterator<Item = usize>) -> Self {
         Self {
             readings: indices.into_iter().map(|i| self.readings[i]).collect(),
@@ -339,16 +352,16 @@ impl Measurements {
     }
 }
 
-/// Of incidences in ascending order those up to an angle in radians, that angle included.
+/// The incidences up to an angle in radians, inclusive, of incidences in ascending order.
 pub(crate) fn up_to(incidences: &[Incidence], psi: f64) -> &[Incidence] {
-    // A rounding of the angle shall not exclude the limit itself.
+    // Rounding of the angle must not exclude the limit itself.
     let limit = psi + 1e-9;
     &incidences[..incidences.partition_point(|incidence| incidence.psi <= limit)]
 }
 
 #[expect(
     clippy::ref_option,
-    reason = "the form that sorting and searching ask for"
+    reason = "the signature that sorting and searching need"
 )]
 fn by_value(a: &Option<f64>, b: &Option<f64>) -> Ordering {
     a.unwrap_or(0.0).total_cmp(&b.unwrap_or(0.0))

@@ -1,11 +1,14 @@
-//! The refractive index of the coating, one for all wavelengths or one for each.
+//! The refractive index of the coating: one for all wavelengths, or one for each.
 
 use std::str::FromStr;
 
 use brdf_core::brdf::check_refractive_index;
 use serde::{Deserialize, Serialize};
 
-/// Largest relative distance between a wavelength and the listed one whose index it takes.
+use crate::format::ParseError;
+
+/// The largest relative difference between a wavelength and the listed wavelength whose index
+/// applies to it.
 pub(crate) const WAVELENGTH_TOLERANCE: f64 = 0.01;
 
 /// The refractive index n, relative to air.
@@ -19,8 +22,8 @@ pub enum RefractiveIndex {
 }
 
 impl RefractiveIndex {
-    /// The index at a wavelength: that of the nearest listed wavelength, which must be within 1 %
-    /// of it (so that a list may say 0.63 for a scan at 0.63079 um). Nothing is interpolated.
+    /// The index at a wavelength in micrometres: that of the nearest listed wavelength within 1 %, so
+    /// that 0.63 in a list applies to a scan at 0.63079 um. Nothing is interpolated.
     pub fn at(&self, wavelength_um: Option<f64>) -> Option<f64> {
         match self {
             Self::Same(n) => Some(*n),
@@ -36,53 +39,59 @@ impl RefractiveIndex {
     }
 }
 
-/// `1.5`, or `0.63=1.60,0.85=1.58` with wavelengths in micrometres.
+/// From `1.5`, or `0.63=1.60,0.85=1.58` with wavelengths in micrometres.
 impl FromStr for RefractiveIndex {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         if !text.contains('=') {
             return parse_index(text).map(Self::Same);
         }
         text.split(',')
             .map(|entry| {
-                let (wavelength, n) = entry
-                    .split_once('=')
-                    .ok_or_else(|| format!("\"{entry}\": expected WAVELENGTH=INDEX"))?;
+                let (wavelength, n) = entry.split_once('=').ok_or_else(|| {
+                    ParseError::new(format!("\"{entry}\": expected WAVELENGTH=INDEX"))
+                })?;
                 Ok((parse_wavelength(wavelength)?, parse_index(n)?))
             })
-            .collect::<Result<Vec<(f64, f64)>, String>>()
+            .collect::<Result<Vec<(f64, f64)>, ParseError>>()
             .and_then(without_contradiction)
             .map(Self::ByWavelength)
     }
 }
 
-fn without_contradiction(list: Vec<(f64, f64)>) -> Result<Vec<(f64, f64)>, String> {
+fn without_contradiction(list: Vec<(f64, f64)>) -> Result<Vec<(f64, f64)>, ParseError> {
     let contradicts = |(i, (wavelength, n)): &(usize, &(f64, f64))| {
         list[..*i]
             .iter()
             .any(|(other, m)| other == wavelength && m != n)
     };
     match list.iter().enumerate().find(contradicts) {
-        Some((_, (wavelength, _))) => Err(format!("two indices for {wavelength} um")),
+        Some((_, (wavelength, _))) => {
+            Err(ParseError::new(format!("two indices for {wavelength} um")))
+        }
         None => Ok(list),
     }
 }
 
-fn parse_index(text: &str) -> Result<f64, String> {
+fn parse_index(text: &str) -> Result<f64, ParseError> {
     let n: f64 = text.trim().parse().map_err(|_| {
-        format!("\"{text}\" is not a refractive index: expected a number such as 1.5, or 0.63=1.60,0.85=1.58")
+        ParseError::new(format!(
+            "\"{text}\" is not a refractive index: expected a number such as 1.5, or 0.63=1.60,0.85=1.58"
+        ))
     })?;
-    check_refractive_index(n).map_err(|error| error.to_string())
+    check_refractive_index(n).map_err(|error| ParseError::new(error.to_string()))
 }
 
-fn parse_wavelength(text: &str) -> Result<f64, String> {
+fn parse_wavelength(text: &str) -> Result<f64, ParseError> {
     text.trim()
         .parse()
         .ok()
         .filter(|w: &f64| *w > 0.0 && w.is_finite())
         .ok_or_else(|| {
-            format!("\"{text}\" is not a wavelength: expected a positive number of micrometres")
+            ParseError::new(format!(
+                "\"{text}\" is not a wavelength: expected a positive number of micrometres"
+            ))
         })
 }
 
@@ -109,12 +118,16 @@ mod tests {
     #[test]
     fn what_is_not_an_index_is_named() {
         let message = |text: &str| text.parse::<RefractiveIndex>().unwrap_err();
-        assert!(message("glass").contains("\"glass\""));
-        assert!(message("0.9").contains("n = 0.9"));
-        assert!(message("NaN").contains("n = NaN"));
-        assert!(message("0.6=1.5,2").contains("\"2\""));
-        assert!(message("-0.6=1.5").contains("\"-0.6\""));
-        assert!(message("0.6=1.5,").contains("\"\""));
-        assert!(message("0.6=1.5,0.6=1.6").contains("two indices for 0.6 um"));
+        assert!(message("glass").to_string().contains("\"glass\""));
+        assert!(message("0.9").to_string().contains("n = 0.9"));
+        assert!(message("NaN").to_string().contains("n = NaN"));
+        assert!(message("0.6=1.5,2").to_string().contains("\"2\""));
+        assert!(message("-0.6=1.5").to_string().contains("\"-0.6\""));
+        assert!(message("0.6=1.5,").to_string().contains("\"\""));
+        assert!(
+            message("0.6=1.5,0.6=1.6")
+                .to_string()
+                .contains("two indices for 0.6 um")
+        );
     }
 }

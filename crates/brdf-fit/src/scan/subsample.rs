@@ -1,4 +1,4 @@
-//! A part of many readings that stands for all of them.
+//! A subsample of many readings, evenly distributed over the directions.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -7,20 +7,20 @@ use rayon::prelude::*;
 
 use crate::scan::{Measurement, Measurements};
 
-/// Steps of each coordinate along the curve: a power of two.
+/// The number of steps of each coordinate along the curve: a power of two.
 const STEPS: f64 = 1024.0;
 
-/// The bits of an index: more readings are not held in memory.
+/// The number of bits of an index; no scan in memory has more readings.
 const INDEX: u64 = (1 << 34) - 1;
 
 impl Measurements {
-    /// As many of the readings of each wavelength, in the order of the file, all where there are no
-    /// more: always the same ones, evenly over theta_h, theta_d and phi_d.
+    /// `count` readings of each wavelength, or all if there are fewer, evenly distributed over
+    /// theta_h, theta_d and phi_d and in the order of the file. The choice is deterministic.
     ///
-    /// The readings are put in order along a curve that fills the space of (sqrt theta_h, theta_d,
-    /// phi_d), whose first coordinate makes bins of a MERL table equally wide (Morton, "A computer
-    /// oriented geodetic data base", IBM 1966), and the middle one of every so many is taken: the
-    /// parts of the curve are blocks of that space, each with one reading.
+    /// The readings are sorted along a space-filling curve (Morton, "A computer oriented geodetic data
+    /// base", IBM 1966) through (sqrt theta_h, theta_d, phi_d), in which the bins of a MERL table are
+    /// equally wide. The curve is divided into `count` equal parts, each of which is a block of that
+    /// space, and the middle reading of each part is taken.
     #[must_use]
     pub fn sampled(&self, count: usize) -> Self {
         let all = self.readings();
@@ -46,7 +46,7 @@ impl Measurements {
     }
 }
 
-/// The middle reading of each of `count` equal parts of the curve; all where there are no more.
+/// The middle reading of each of `count` equal parts of the curve; all readings if there are fewer.
 fn spread(places: impl ParallelIterator<Item = u64>, count: usize) -> Vec<usize> {
     let mut places: Vec<u64> = places.collect();
     places.par_sort_unstable();
@@ -58,12 +58,12 @@ fn spread(places: impl ParallelIterator<Item = u64>, count: usize) -> Vec<usize>
     (0..count).map(|part| index(places[middle(part)])).collect()
 }
 
-/// The place of a reading along the curve, in the upper bits, and its index.
+/// The position of a reading along the curve in the upper bits, its index in the lower bits.
 fn on_curve(reading: &Measurement, index: usize) -> u64 {
     place_on_curve(reading) << INDEX.count_ones() | index as u64 & INDEX
 }
 
-/// Where a reading lies along the curve.
+/// The position of a reading along the curve.
 fn place_on_curve(reading: &Measurement) -> u64 {
     let Ok(geometry) = reading.geometry() else {
         return 0;
@@ -90,7 +90,7 @@ fn half_difference(geometry: &Geometry) -> [f64; 3] {
     let (sin_d, cos_d) = (geometry.sin2_gamma().sqrt(), geometry.cos_gamma());
     let (sin_h, cos_h) = theta_h.sin_cos();
     let cos_phi = (cos_h * cos_d - geometry.cos_psi()) / (sin_h * sin_d);
-    // Next to the normal, phi_d says nothing.
+    // phi_d is undefined where one of the angles vanishes.
     let phi_d = if cos_phi.is_finite() {
         cos_phi.clamp(-1.0, 1.0).acos()
     } else {
@@ -103,7 +103,7 @@ fn half_difference(geometry: &Geometry) -> [f64; 3] {
     ]
 }
 
-/// The bits of a number, each followed by two zeros.
+/// The bits of a number, each followed by two zero bits.
 fn apart(number: u64) -> u64 {
     (0..10).fold(0, |spread, bit| spread | (number >> bit & 1) << (3 * bit))
 }

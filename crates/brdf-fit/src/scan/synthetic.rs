@@ -1,19 +1,19 @@
-//! Scans computed from the model, to try things on.
+//! Scans that are computed from the model, for examples and tests.
 
 use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
 
 use crate::scan::{Measurement, Measurements};
 
-/// Incidence angles of a computed scan, in degrees.
+/// The incidence angles of a computed scan in degrees.
 pub const PSI_DEG: [i32; 8] = [0, 10, 20, 30, 40, 50, 60, 70];
 
-/// No reading is nearer to the source than this, in degrees: there the detector blocks the light.
+/// The smallest angle between view and source in degrees: closer, a detector blocks the light.
 const BLOCKED_DEG: i32 = 5;
 
 /// A noise-free scan of the model in the plane of incidence: psi = 0, 10, ... 70 deg,
 /// theta = -80, -75, ... 80 deg, no reading within 5 deg of the source.
 ///
-/// Parameters and n are in the model's domain; otherwise the scan is empty.
+/// The scan is empty if the parameters or n are outside the domain of the model.
 pub fn scan(parameters: Parameters, n: f64) -> Measurements {
     let Ok(brdf) = ThreeParameterBrdf::new(parameters, n) else {
         return Measurements::default();

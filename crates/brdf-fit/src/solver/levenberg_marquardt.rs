@@ -1,10 +1,10 @@
-//! Levenberg and Marquardt's method within a box.
+//! The Levenberg-Marquardt method with bounds.
 //!
 //! Scaling and damping follow Moré ("The Levenberg-Marquardt algorithm: implementation and
-//! theory", 1978) and Nielsen ("Damping parameter in Marquardt's method", 1999). The box is kept
-//! by an active set: where a step would leave it, that parameter is held at its bound and the step
-//! of the others is solved again with it there, so that they answer to the bound. Clamping alone
-//! would leave them where the unbounded step wanted them, which need not lower E at all.
+//! theory", 1978) and Nielsen ("Damping parameter in Marquardt's method", 1999). The bounds are kept
+//! by an active set: a parameter whose step would cross its bound is fixed there, and the step of
+//! the other parameters is solved again. Clamping alone keeps the other components of the unbounded
+//! step, which need not lower E at all.
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, TerminationReason, TerminationStatus};
 use nalgebra::{SMatrix, SVector};
@@ -14,34 +14,34 @@ use crate::objective::NormalEquations;
 
 /// A sum of squares with its normal equations.
 pub trait LeastSquares<const P: usize> {
-    /// E, J^T r and J^T J at the parameters.
+    /// E, J^T r and J^T J at the given parameters.
     fn normal_equations(&self, param: &SVector<f64, P>) -> NormalEquations<P>;
 }
 
-/// The gradient is taken for zero when the cosine between the residuals and each column of their
-/// Jacobian, but for those that a bound stops, is below this.
+/// The gradient counts as zero when the cosine between the residuals and each column of their
+/// Jacobian is below this; columns of parameters at an active bound are ignored.
 const GRADIENT_TOLERANCE: f64 = 1e-9;
 
-/// The step is taken for zero below this, relative to the parameters and in their scaling.
+/// The step counts as zero below this, relative to the scaled parameters.
 const STEP_TOLERANCE: f64 = 1e-15;
 
-/// No further reduction of E: the linear model promises less than this fraction of it.
+/// The solver stops when the linear model predicts a smaller relative reduction of E than this.
 const REDUCTION_TOLERANCE: f64 = 1e-13;
 
 /// Damping of the first step, relative to the scaled matrix.
 const FIRST_DAMPING: f64 = 1e-3;
 
-/// A step is taken when E falls by at least this fraction of what the linear model promises.
+/// A step is accepted when E falls by at least this fraction of the predicted reduction.
 const ACCEPTED_GAIN: f64 = 1e-4;
 
-/// The solver: an argmin [`Solver`] for a [`LeastSquares`] problem, one trial step an iteration.
+/// An argmin [`Solver`] for a [`LeastSquares`] problem, with one trial step in each iteration.
 #[derive(Debug, Clone)]
 pub struct LevenbergMarquardt<const P: usize> {
     lower: SVector<f64, P>,
     upper: SVector<f64, P>,
     damping: f64,
     damping_growth: f64,
-    /// Squared scale of each parameter: the largest diagonal element of J^T J so far.
+    /// The squared scale of each parameter: the largest diagonal element of J^T J so far.
     scale: SVector<f64, P>,
     termination: Option<Termination>,
     here: Option<NormalEquations<P>>,
@@ -50,7 +50,7 @@ pub struct LevenbergMarquardt<const P: usize> {
 type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
 
 impl<const P: usize> LevenbergMarquardt<P> {
-    /// A solver that keeps each parameter within [lower, upper]; a bound may be infinite.
+    /// A solver that keeps each parameter within [lower, upper]. Bounds may be infinite.
     pub fn new(lower: SVector<f64, P>, upper: SVector<f64, P>) -> Self {
         Self {
             lower,
@@ -63,18 +63,18 @@ impl<const P: usize> LevenbergMarquardt<P> {
         }
     }
 
-    /// Why the solver stopped; `None` while it runs, or when its iterations were used up.
+    /// The reason of the termination; `None` while the solver runs and at the iteration limit.
     pub fn termination(&self) -> Option<Termination> {
         self.termination
     }
 
-    /// Takes over the normal equations of a new point.
+    /// Adopts the normal equations of a new point.
     fn arrive(&mut self, equations: NormalEquations<P>) {
         self.scale = self.scale.sup(&equations.matrix.diagonal());
         self.here = Some(equations);
     }
 
-    /// The parameters that may move: not on a bound that the gradient pushes against.
+    /// The parameters that are free to move: those that the gradient does not push against a bound.
     fn free(&self, param: &SVector<f64, P>, gradient: &SVector<f64, P>) -> [bool; P] {
         std::array::from_fn(|j| {
             let held_below = param[j] <= self.lower[j] && gradient[j] >= 0.0;
@@ -83,12 +83,12 @@ impl<const P: usize> LevenbergMarquardt<P> {
         })
     }
 
-    /// The step within the box that minimises the damped quadratic model, or `None` where its
-    /// matrix is singular.
+    /// The step within the bounds that minimises the damped quadratic model; `None` if its matrix is
+    /// singular.
     ///
-    /// A primal active-set method: from a feasible step go towards the minimum over the free
-    /// parameters, hold the first one that meets its bound, and release a held one when the model
-    /// falls towards the inside. So every step promises a lower E.
+    /// A primal active-set method: it moves from a feasible step towards the minimum over the free
+    /// parameters, fixes the first one that reaches its bound, and releases a fixed one when the model
+    /// decreases towards the inside. Each step therefore predicts a lower E.
     fn step(
         &self,
         param: &SVector<f64, P>,
@@ -98,7 +98,7 @@ impl<const P: usize> LevenbergMarquardt<P> {
         let (lower, upper) = (self.lower - param, self.upper - param);
         let mut free = self.free(param, &equations.gradient);
         let mut step = SVector::zeros();
-        // Each working set lowers the model, so that none comes twice: there are 3^P at the most.
+        // Each working set lowers the model, so that none repeats: there are at most 3^P.
         let working_sets = (0..P).fold(1, |count, _| 3 * count);
         for _ in 0..working_sets {
             let target = solve(&matrix, &equations.gradient, &free, &step)?;
@@ -145,7 +145,7 @@ impl<const P: usize> LevenbergMarquardt<P> {
     fn damped(&self, matrix: &SMatrix<f64, P, P>) -> SMatrix<f64, P, P> {
         let mut damped = *matrix;
         for i in 0..P {
-            // A parameter without any effect so far keeps a unit scale and does not move.
+            // A parameter that has had no effect so far keeps a unit scale and does not move.
             let scale = if self.scale[i] > 0.0 {
                 self.scale[i]
             } else {
@@ -213,7 +213,7 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
         } else if promised <= REDUCTION_TOLERANCE * here.error {
             self.termination = Some(Termination::NoFurtherReduction);
         }
-        // Rounding of param + step must not leave the box.
+        // Rounding of param + step must not cross the bounds.
         let trial = (param + step).sup(&self.lower).inf(&self.upper);
         let there =
             problem.problem("normal_equations_count", |p| Ok(p.normal_equations(&trial)))?;
@@ -237,7 +237,7 @@ impl<const P: usize, O: LeastSquares<P>> Solver<O, State<P>> for LevenbergMarqua
     }
 }
 
-/// The minimum of the model over the free parameters, the others staying at their steps.
+/// The minimum of the model over the free parameters; the other parameters keep their steps.
 fn solve<const P: usize>(
     matrix: &SMatrix<f64, P, P>,
     gradient: &SVector<f64, P>,
@@ -310,7 +310,7 @@ mod tests {
         assert_eq!(ending, Some(Termination::GradientZero));
     }
 
-    /// With the first violated bound simply held, the step went to (4, 0), where E is larger.
+    /// With the first violated bound simply fixed, the step went to (4, 0), where E is larger.
     #[test]
     fn of_two_bounds_in_the_way_only_the_right_one_is_held() {
         let matrix = Matrix2::new(0.1, 0.074, 0.074, 0.1);

@@ -1,4 +1,4 @@
-//! The two minimisers of a stage, as argmin solvers that keep the parameters within their bounds.
+//! The two minimisers, as argmin solvers that keep the parameters within their bounds.
 
 mod error;
 pub mod levenberg_marquardt;
@@ -16,6 +16,7 @@ use brdf_core::ModelParameters;
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
+use crate::format::ParseError;
 use crate::model::Parameter;
 use crate::objective::{NormalEquations, Objective};
 use crate::progress::Progress;
@@ -23,18 +24,18 @@ use levenberg_marquardt::{LeastSquares, LevenbergMarquardt};
 use nelder_mead::{NelderMead, Unbounded};
 use observed::{Observed, State};
 
-/// How a stage minimises E.
+/// The minimiser of a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Nelder and Mead's simplex: values of E only.
+    /// The Nelder-Mead simplex, which uses values of E only.
     NelderMead,
-    /// Levenberg and Marquardt's damped Gauss-Newton steps: E and its derivatives.
+    /// The Levenberg-Marquardt method: damped Gauss-Newton steps from E and its derivatives.
     LevenbergMarquardt,
 }
 
 impl Method {
-    /// NM or LM, as the tables have it.
+    /// `NM` or `LM`, as in the tables.
     pub fn short_name(self) -> &'static str {
         match self {
             Self::NelderMead => "NM",
@@ -53,32 +54,32 @@ impl fmt::Display for Method {
 }
 
 impl FromStr for Method {
-    type Err = String;
+    type Err = ParseError;
 
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, ParseError> {
         match text {
             "nelder-mead" | "nm" => Ok(Self::NelderMead),
             "levenberg-marquardt" | "lm" => Ok(Self::LevenbergMarquardt),
-            _ => Err(format!(
+            _ => Err(ParseError::new(format!(
                 "\"{text}\": expected nelder-mead (nm) or levenberg-marquardt (lm)"
-            )),
+            ))),
         }
     }
 }
 
-/// Why a minimiser stopped.
+/// The reason of the termination of a minimiser.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Termination {
-    /// The gradient of E, but for what a bound stops, is zero to rounding.
+    /// The projected gradient of E is zero within rounding.
     GradientZero,
-    /// The step became smaller than the parameters can show.
+    /// The step is below the resolution of the parameters.
     StepTooSmall,
-    /// E does not become smaller within its rounding.
+    /// E does not decrease by more than its rounding.
     NoFurtherReduction,
-    /// A fresh simplex found nothing lower.
+    /// A new simplex finds no lower E.
     SimplexConverged,
-    /// The number of iterations is used up: the result need not be a minimum.
+    /// The iteration limit is reached; the result need not be a minimum.
     IterationLimit,
 }
 
@@ -94,24 +95,28 @@ impl fmt::Display for Termination {
     }
 }
 
-/// What a minimiser did.
+/// The result of a minimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Minimum {
-    /// Where it ended.
+    /// The parameters at the minimum.
     pub parameters: ModelParameters,
-    /// E there.
+    /// E at the minimum, as a fraction.
     pub error: f64,
-    /// Its iterations.
+    /// The number of iterations.
     pub iterations: u64,
-    /// How often E was evaluated, alone or with its derivatives.
+    /// The number of evaluations of E, with or without derivatives.
     pub evaluations: u64,
-    /// Why it stopped.
+    /// The reason of the termination.
     pub termination: Termination,
 }
 
 /// Minimises E over the free parameters from a starting point, each within its
-/// [range](Parameter::range); the others stay as they are. Each iteration is told, the start as
-/// iteration 0.
+/// [range](Parameter::range); the other parameters keep their values. Each iteration is reported to
+/// the observer of `progress`, the start as iteration 0.
+///
+/// # Errors
+///
+/// The minimiser fails, or the observer cancels.
 pub fn minimise(
     objective: &Objective,
     method: Method,
@@ -125,7 +130,7 @@ pub fn minimise(
         max_iterations,
         progress,
     };
-    // The number of free parameters is known to the compiler from here on.
+    // From here on, the compiler knows the number of free parameters.
     let found = match *free {
         [] => evaluated(objective, start, progress)?,
         [a] => Problem::new(objective, start, [a]).minimise(&run)?,
@@ -161,14 +166,14 @@ pub(crate) fn polish(
         .map(|minimum| minimum.parameters)
 }
 
-/// E where nothing is free.
+/// The result if no parameter is free.
 fn evaluated(
     objective: &Objective,
     at: ModelParameters,
     progress: &Progress<'_>,
 ) -> Result<Minimum, SolverError> {
     let error = objective.error(&at);
-    progress.reach(error, &at)?;
+    progress.advance_to(error, &at)?;
     Ok(Minimum {
         parameters: at,
         error,
@@ -178,7 +183,7 @@ fn evaluated(
     })
 }
 
-/// How a minimiser is run.
+/// The settings of a minimisation.
 struct Run<'a> {
     method: Method,
     max_iterations: u64,
@@ -194,7 +199,7 @@ pub struct Problem<'a, const P: usize> {
 }
 
 impl<'a, const P: usize> Problem<'a, P> {
-    /// E over the free parameters, the others being those of the start.
+    /// E over the free parameters; the other parameters are those of the start.
     pub fn new(objective: &'a Objective, start: ModelParameters, free: [Parameter; P]) -> Self {
         Self {
             objective,
@@ -245,7 +250,7 @@ impl<'a, const P: usize> Problem<'a, P> {
 }
 
 impl Run<'_> {
-    /// Runs a solver over coordinates, which `parameters` turns into parameters.
+    /// Runs a solver over coordinates, which `parameters` converts to parameters.
     fn execute<const P: usize, O, S: Solver<O, State<SVector<f64, P>>>>(
         &self,
         problem: O,
@@ -253,8 +258,8 @@ impl Run<'_> {
         start: SVector<f64, P>,
         parameters: impl Fn(&SVector<f64, P>) -> ModelParameters,
     ) -> Result<(Minimum, S), SolverError> {
-        let tell = |x: &_, error| self.progress.reach(error, &parameters(x));
-        let observed = Observed { solver, tell };
+        let notify = |x: &_, error| self.progress.advance_to(error, &parameters(x));
+        let observed = Observed { solver, notify };
         let result = Executor::new(problem, observed)
             .configure(|state| state.param(start).max_iters(self.max_iterations))
             .ctrlc(false)
@@ -272,10 +277,10 @@ impl Run<'_> {
     }
 }
 
-/// Puts a weight exactly on its bound where E does not become larger by that.
+/// Moves a weight exactly onto its bound if this does not increase E.
 ///
-/// A minimiser comes as near to a bound as E can tell, and no nearer: to 1e-13 of E, or where E is
-/// nothing but rounding to 1e-10 of the readings.
+/// A minimiser approaches a bound only as closely as E resolves: to 1e-13 of E, or to 1e-10 of the
+/// readings if E is only rounding.
 fn onto_bounds(
     objective: &Objective,
     free: &[Parameter],
@@ -401,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn the_iteration_limit_is_told() {
+    fn the_iteration_limit_is_reported() {
         let objective = objective(Parameters::new(0.3, 0.1, 0.2).unwrap());
         for method in METHODS {
             let found = minimum(&objective, method, 2);

@@ -1,9 +1,9 @@
-//! Nelder and Mead's simplex method within bounds.
+//! The Nelder-Mead simplex method with bounds.
 //!
-//! argmin's simplex knows no bounds, so it moves in coordinates that have none: sqrt(k2),
-//! sqrt(kD), ln(k1), sqrt(n - 1) and ln(p). It stops when its corners have nearly the same E, which also happens to a
-//! simplex that has collapsed somewhere else than at a minimum; so a fresh simplex starts where
-//! the last one stopped, until one brings nothing.
+//! The simplex of argmin has no bounds, so it moves in unbounded coordinates: sqrt(k2), sqrt(kD),
+//! ln(k1), sqrt(n - 1) and ln(p). It stops when its corners have nearly the same E, which also
+//! happens to a simplex that has collapsed away from a minimum. A new simplex therefore starts where
+//! the last one stopped, until one does not lower E.
 
 use argmin::core::{
     CostFunction, Error, IterState, KV, Problem, Solver, State as _, TerminationReason,
@@ -17,13 +17,13 @@ use super::{Problem as Free, Termination};
 use crate::model::Parameter;
 
 /// A simplex has converged when the standard deviation of E over its corners is below this, as a
-/// fraction of E. (argmin's tolerance is absolute; so it is set anew for each simplex.)
+/// fraction of E. The tolerance of argmin is absolute and is therefore set for each simplex.
 const SPREAD_TOLERANCE: f64 = 1e-13;
 
-/// The absolute spread of E below which it is rounding alone, E being a fraction of 1.
+/// The absolute spread of E, a fraction, below which it is only rounding.
 const SPREAD_FLOOR: f64 = 1e-24;
 
-/// A fresh simplex has brought nothing when E fell by less than this fraction.
+/// A new simplex makes no progress if E falls by less than this fraction.
 const RESTART_GAIN: f64 = 1e-9;
 
 /// E over coordinates without bounds: k2 = x^2, kD = x^2, k1 = exp(x), n = 1 + x^2, p = exp(x).
@@ -31,12 +31,12 @@ const RESTART_GAIN: f64 = 1e-9;
 pub struct Unbounded<'a, const P: usize>(Free<'a, P>);
 
 impl<'a, const P: usize> Unbounded<'a, P> {
-    /// E of the problem, infinite where a parameter is above its range, or k1 or p below it.
+    /// E of the problem; infinite if a parameter is above its range, or k1 or p below it.
     pub fn new(problem: Free<'a, P>) -> Self {
         Self(problem)
     }
 
-    /// The coordinates of parameters, each brought into its range.
+    /// The coordinates of parameters, each clamped to its range.
     pub fn to_coordinates(&self, at: &ModelParameters) -> SVector<f64, P> {
         self.0.vector(|parameter| {
             let (lowest, highest) = parameter.range();
@@ -49,7 +49,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
         })
     }
 
-    /// The parameters of coordinates, each brought into its range.
+    /// The parameters of coordinates, each clamped to its range.
     pub fn to_parameters(&self, x: &SVector<f64, P>) -> ModelParameters {
         let mut values = *x;
         for (value, parameter) in values.iter_mut().zip(self.0.free) {
@@ -59,8 +59,8 @@ impl<'a, const P: usize> Unbounded<'a, P> {
         self.0.parameters(&values)
     }
 
-    /// The sizes of a first simplex. A weight that starts at zero must be able to leave it: a step
-    /// as for a Lambertian surface.
+    /// The edges of the first simplex. A weight that starts at zero gets the step of a Lambertian
+    /// surface, so that it can leave its bound.
     pub fn steps(&self) -> SVector<f64, P> {
         let weight = self.0.objective.lambertian_weight().abs().max(1e-12);
         self.0.vector(|parameter| match parameter {
@@ -75,7 +75,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
         x.iter().zip(self.0.free).all(|(x, parameter)| {
             let (lowest, highest) = parameter.range();
             let value = of_coordinate(parameter, *x);
-            // The clamped start may be a rounding outside the range.
+            // Rounding may move the clamped start out of the range.
             (lowest * 0.999..=highest * 1.001).contains(&value)
         })
     }
@@ -103,13 +103,13 @@ impl<const P: usize> CostFunction for Unbounded<'_, P> {
     }
 }
 
-/// The solver: argmin's simplex, started afresh until that brings nothing.
+/// The simplex of argmin, restarted until a new simplex makes no progress.
 #[derive(Clone)]
 pub struct NelderMead<const P: usize> {
     simplex: Simplex<SVector<f64, P>, f64>,
     start: SVector<f64, P>,
     steps: SVector<f64, P>,
-    /// E where the simplex in use started.
+    /// E at the start of the current simplex.
     error_at_start: f64,
     termination: Option<Termination>,
 }
@@ -117,7 +117,7 @@ pub struct NelderMead<const P: usize> {
 type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
 
 impl<const P: usize> NelderMead<P> {
-    /// A solver that starts with a simplex of the given steps along each coordinate.
+    /// A solver whose first simplex has the given edges along the coordinates.
     pub fn new(start: SVector<f64, P>, steps: SVector<f64, P>) -> Self {
         Self {
             simplex: simplex(start, steps),
@@ -128,12 +128,12 @@ impl<const P: usize> NelderMead<P> {
         }
     }
 
-    /// Why the solver stopped; `None` while it runs, or when its iterations were used up.
+    /// The reason of the termination; `None` while the solver runs and at the iteration limit.
     pub fn termination(&self) -> Option<Termination> {
         self.termination
     }
 
-    /// A new simplex at the start, in the next direction and of the next size.
+    /// Starts a new simplex, in the next direction and with the next size.
     fn place(
         &mut self,
         problem: &mut Problem<Unbounded<'_, P>>,
@@ -186,7 +186,7 @@ impl<'a, const P: usize> Solver<Unbounded<'a, P>, State<P>> for NelderMead<P> {
             return Ok((state, None));
         }
         self.start = *state.get_best_param().unwrap_or(&self.start);
-        // The other way round, so that the new corners are not where the old ones came from.
+        // The direction is reversed, so that the new corners differ from those of the last simplex.
         self.steps *= -0.5;
         Ok((self.place(problem, state)?, None))
     }

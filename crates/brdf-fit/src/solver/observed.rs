@@ -1,28 +1,28 @@
-//! A solver whose iterations are told while it runs.
+//! A solver that reports its iterations while it runs.
 //!
-//! argmin's own observers live as long as the program, and cannot borrow who is to be told.
+//! argmin's own observers have to be `'static` and cannot borrow an [`Observer`](crate::progress::Observer).
 
 use argmin::core::{Error, IterState, KV, Problem, Solver, State as _, TerminationStatus};
 
 use crate::progress::Cancelled;
 
-/// The state of a minimiser without derivatives of its own over coordinates X.
+/// The state of a minimiser over the coordinates X, whose derivatives argmin does not store.
 pub(crate) type State<X> = IterState<X, (), (), (), (), f64>;
 
-/// Another solver, which tells where it is and E there: first the start, then after each of its
-/// iterations.
+/// Wraps a solver and passes its parameters and E to `notify`: at the start, and after each
+/// iteration.
 pub(crate) struct Observed<S, F> {
     pub(crate) solver: S,
-    pub(crate) tell: F,
+    pub(crate) notify: F,
 }
 
 impl<S, F> Observed<S, F> {
-    fn tell<X: Clone>(&self, state: &State<X>) -> Result<(), Error>
+    fn notify<X: Clone>(&self, state: &State<X>) -> Result<(), Error>
     where
         F: Fn(&X, f64) -> Result<(), Cancelled>,
     {
         if let Some(here) = state.get_param() {
-            (self.tell)(here, state.get_cost())?;
+            (self.notify)(here, state.get_cost())?;
         }
         Ok(())
     }
@@ -45,7 +45,7 @@ where
     ) -> Result<(State<X>, Option<KV>), Error> {
         let begun = self.solver.init(problem, state);
         if let Ok((state, _)) = &begun {
-            self.tell(state)?;
+            self.notify(state)?;
         }
         begun
     }
@@ -55,10 +55,10 @@ where
         problem: &mut Problem<O>,
         state: State<X>,
     ) -> Result<(State<X>, Option<KV>), Error> {
-        // The state is large: it is looked at where it is.
+        // The state is large and therefore borrowed.
         let next = self.solver.next_iter(problem, state);
         if let Ok((state, _)) = &next {
-            self.tell(state)?;
+            self.notify(state)?;
         }
         next
     }

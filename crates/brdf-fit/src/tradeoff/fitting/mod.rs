@@ -348,7 +348,7 @@ mod tests {
     #[test]
     fn every_model_has_its_trade() {
         for model in [Model::Lambert, Model::Specular, Model::Three, Model::ThreeN] {
-            let options = options().of_model(model);
+            let options = options().with_model(model);
             let trade = trade_fits(&rippled(), &FitOptions { model, ..options }).unwrap();
             let first = trade.alternatives[0].measured().unwrap();
             assert_eq!(first.e_percent, trade.reference.e_percent, "{model}");

@@ -185,7 +185,7 @@ mod tests {
 
     #[test]
     fn a_model_with_more_than_a_width_has_the_grid_alone() {
-        let options = FitOptions::default().of_model(Model::ThreeN);
+        let options = FitOptions::default().with_model(Model::ThreeN);
         assert!(found(&options, Depth::Grid).is_ok());
         let error = found(&options, Depth::Refined).unwrap_err();
         assert!(error.ends_with("n is free"), "{error}");

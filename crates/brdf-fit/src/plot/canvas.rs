@@ -5,7 +5,7 @@ use plotters::prelude::DrawingBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontTransform, IntoFont, RGBColor, TextStyle};
 
-use super::PlotError;
+use super::error::PlotError;
 use super::palette::MarkShape;
 use super::style::SIZE;
 

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use brdf_core::{AnyBrdf, Geometry};
 
-use super::Sigma;
 use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
 use super::selection::Selection;
 use super::view::{Scale, View};
@@ -20,6 +19,9 @@ const FIGURE_COLUMNS: usize = 330;
 /// A logarithmic axis has at the most so many decades: a single reading of next to nothing shall
 /// not squeeze the others.
 pub(super) const DECADES: i32 = 6;
+
+/// The standard error of the theory in 1/sr at a geometry.
+pub(super) type Sigma<'a> = Option<&'a dyn Fn(&Geometry) -> f64>;
 
 /// One incidence.
 #[derive(Debug, Clone, PartialEq)]

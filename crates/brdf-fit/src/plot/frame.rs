@@ -2,11 +2,11 @@
 
 use plotters::style::{Color, RGBColor};
 
-use super::PlotError;
 use super::axis::Axis;
 use super::canvas::{Canvas, Place, Stands, drawn_above};
 use super::clip::within;
 use super::curves::{Styled, evenly};
+use super::error::PlotError;
 use super::palette::MarkShape;
 use super::style::{BAND, FINE_GRID, GRID, INK, SIZE, TEXT, TITLE, ink};
 use super::title::Title;

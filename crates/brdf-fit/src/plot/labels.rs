@@ -2,8 +2,8 @@
 
 use plotters::style::RGBColor;
 
-use super::PlotError;
 use super::canvas::{Canvas, Place, Stands};
+use super::error::PlotError;
 use super::frame::Area;
 
 /// Size of the names.

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Figure, PlotError};
+use super::error::PlotError;
+use super::figure::Figure;
 use crate::output::write_file;
 
 /// Pixels of a written PNG for each unit of the SVG.

@@ -2,14 +2,15 @@
 
 use plotters::style::RGBColor;
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Place, drawn};
-use super::frame::{Frame, Key, Legend, WHOLE, draw_title};
-use super::labels::{Label, placed};
-use super::palette::MarkShape;
-use super::style::{INK, MAIN, POINTED_OUT};
-use super::title::{Title, shortened};
-use super::{Figure, PlotError};
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{Canvas, Place, drawn};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use crate::plot::labels::{Label, placed};
+use crate::plot::palette::MarkShape;
+use crate::plot::style::{INK, MAIN, POINTED_OUT};
+use crate::plot::title::{Title, shortened};
 use crate::words::counted;
 
 /// All decades of the costs and errors of a trade.

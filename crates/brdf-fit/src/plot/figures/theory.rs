@@ -2,14 +2,15 @@
 
 use plotters::style::Color;
 
-use super::axis::Axis;
-use super::canvas::Canvas;
-use super::curves::{Curves, DECADES, Styled, lower_ends, values};
-use super::frame::{Frame, Key, Legend, draw_title, drawn_with_samples};
-use super::style::{INK, ink};
-use super::title::Title;
-use super::view::{Scale, View};
-use super::{Figure, PlotError};
+use crate::plot::axis::Axis;
+use crate::plot::canvas::Canvas;
+use crate::plot::curves::{Curves, DECADES, Styled, lower_ends, values};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{Frame, Key, Legend, draw_title, drawn_with_samples};
+use crate::plot::style::{INK, ink};
+use crate::plot::title::Title;
+use crate::plot::view::{Scale, View};
 use crate::words::counted;
 
 /// On a linear axis.

@@ -2,16 +2,17 @@
 
 use plotters::style::Color;
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Place, Stands};
-use super::clip::within;
-use super::curves::{Curves, Styled, values};
-use super::frame::{draw_title, drawn_with_samples};
-use super::style::{BAND, FINE_GRID, GRID, INK, TEXT, ink};
 use super::theory::legend;
-use super::title::Title;
-use super::view::View;
-use super::{Figure, PlotError};
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{Canvas, Place, Stands};
+use crate::plot::clip::within;
+use crate::plot::curves::{Curves, Styled, values};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{draw_title, drawn_with_samples};
+use crate::plot::style::{BAND, FINE_GRID, GRID, INK, TEXT, ink};
+use crate::plot::title::Title;
+use crate::plot::view::View;
 use crate::read::Side;
 use crate::words::counted;
 

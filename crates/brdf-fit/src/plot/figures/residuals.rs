@@ -2,15 +2,16 @@
 
 use plotters::style::Color;
 
-use super::axis::Axis;
-use super::canvas::{Canvas, drawn};
-use super::curves::{Curves, Styled};
-use super::frame::{Frame, Key, Legend, draw_title};
-use super::style::{INK, ink};
 use super::theory::draw_mirror;
-use super::title::Title;
-use super::view::View;
-use super::{Figure, PlotError};
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{Canvas, drawn};
+use crate::plot::curves::{Curves, Styled};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{Frame, Key, Legend, draw_title};
+use crate::plot::style::{INK, ink};
+use crate::plot::title::Title;
+use crate::plot::view::View;
 
 /// The name of the axis of residuals.
 pub(super) const RESIDUAL: &str = "measured - theory / (1/sr)";

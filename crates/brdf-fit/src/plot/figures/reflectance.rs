@@ -2,12 +2,13 @@
 
 use brdf_core::AnyBrdf;
 
-use super::axis::Axis;
-use super::canvas::{Canvas, drawn};
-use super::frame::{Frame, Key, Legend, WHOLE, draw_title};
-use super::style::{INK, MAIN, POINTED_OUT};
-use super::title::{Title, short};
-use super::{Figure, PlotError};
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{Canvas, drawn};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use crate::plot::style::{INK, MAIN, POINTED_OUT};
+use crate::plot::title::{Title, short};
 use crate::stages::Fit;
 
 /// The figure ends here, in degrees, as the energy check does.

@@ -3,9 +3,11 @@
 use brdf_core::published::{PUBLISHED, PublishedSample};
 use brdf_core::{AnyBrdf, Family, ModelParameters};
 
-use super::curves::Curves;
-use super::title::Title;
-use super::{Figure, PlotError, polar, theory};
+use super::{polar, theory};
+use crate::plot::curves::Curves;
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::title::Title;
 
 /// The incidence angles where the paper has several, in degrees.
 const SEVERAL: &[f64] = &[0.0, 15.0, 30.0, 45.0, 60.0, 75.0];

@@ -1,12 +1,13 @@
 //! How sharply E tells k1: the lowest E over all other parameters at each k1 of the global check.
 
-use super::axis::Axis;
-use super::canvas::{Canvas, drawn};
-use super::frame::{Frame, Key, Legend, WHOLE, draw_title};
-use super::palette::MarkShape;
-use super::style::{MAIN, POINTED_OUT};
-use super::title::{Title, short};
-use super::{Figure, PlotError};
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{Canvas, drawn};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use crate::plot::palette::MarkShape;
+use crate::plot::style::{MAIN, POINTED_OUT};
+use crate::plot::title::{Title, short};
 use crate::stages::Fit;
 
 /// E of a noise-free scan goes down to rounding: its axis ends so many decades below the top.

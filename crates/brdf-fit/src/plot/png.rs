@@ -6,10 +6,7 @@ use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
 
-use super::PlotError;
-
-/// The largest side of an image, in pixels.
-pub(super) const LARGEST_SIDE: f32 = 20_000.0;
+use super::error::{LARGEST_SIDE, PlotError};
 
 /// The only typeface: what the machine has installed is of no influence.
 static TYPEFACES: LazyLock<Arc<Database>> = LazyLock::new(|| {

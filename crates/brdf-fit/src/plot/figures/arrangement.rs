@@ -2,15 +2,17 @@
 
 use brdf_core::AnyBrdf;
 
-use super::axis::Axis;
-use super::canvas::{Canvas, Stands};
-use super::curves::{Curves, Source, Styled};
-use super::frame::{Area, Frame, WHOLE, draw_title, drawn_with_samples, shortened_within};
-use super::style::TEXT;
-use super::title::Title;
-use super::view::{Layout, Scale, View};
-use super::{Figure, PlotError, Sigma, polar, residuals, theory};
+use super::{polar, residuals, theory};
 use crate::measurement::Measurements;
+use crate::plot::axis::Axis;
+use crate::plot::canvas::{Canvas, Stands};
+use crate::plot::curves::{Curves, Sigma, Source, Styled};
+use crate::plot::error::PlotError;
+use crate::plot::figure::Figure;
+use crate::plot::frame::{Area, Frame, WHOLE, draw_title, drawn_with_samples, shortened_within};
+use crate::plot::style::TEXT;
+use crate::plot::title::Title;
+use crate::plot::view::{Layout, Scale, View};
 
 /// The part of the height that the residuals take.
 const RESIDUALS: f64 = 0.28;

@@ -19,9 +19,6 @@ pub enum PlotError {
     /// An angle is outside the model's domain.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
-    /// The drawing failed.
-    #[error("the figure cannot be drawn: {0}")]
-    Draw(String),
     /// The SVG cannot be read back for the PNG.
     #[error("the SVG of the figure cannot be read: {0}")]
     Svg(#[from] resvg::usvg::Error),

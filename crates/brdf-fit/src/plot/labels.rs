@@ -1,10 +1,8 @@
 //! Names beside marks, none over another, over a mark, or over a line.
 
-use plotters::style::RGBColor;
-
-use super::canvas::{Canvas, Place, Stands};
-use super::error::PlotError;
+use super::canvas::{Canvas, Point as Place};
 use super::frame::Area;
+use super::svg::{Anchor as Stands, Rgb};
 
 /// Size of the names.
 const SIZE: f64 = 11.0;
@@ -139,9 +137,9 @@ impl Label {
         let (sin, cos) = direction.sin_cos();
         let end = (mark.0 + distance * cos, mark.1 - distance * sin);
         let stands = if cos > 0.0 {
-            Stands::Right
+            Stands::Start
         } else {
-            Stands::Left
+            Stands::End
         };
         Self::at(end, stands, name, distance, (mark, end))
     }
@@ -150,7 +148,7 @@ impl Label {
     /// pole: so all marks of a row can have one.
     fn flag(mark: Place, name: &str, height: f64, stands: Stands) -> Self {
         let end = (mark.0, mark.1 - height);
-        let beside = if stands == Stands::Left {
+        let beside = if stands == Stands::End {
             -BESIDE_POLE
         } else {
             BESIDE_POLE
@@ -161,7 +159,7 @@ impl Label {
 
     fn at(place: Place, stands: Stands, name: &str, distance: f64, leader: (Place, Place)) -> Self {
         let width = LETTER * SIZE * name.chars().count() as f64;
-        let left = if stands == Stands::Left {
+        let left = if stands == Stands::End {
             place.0 - width
         } else {
             place.0
@@ -195,7 +193,7 @@ impl Label {
         let crossings = |leader| over_marks(leader) + over_lines(leader);
         let crossings = self.leader.map_or(0, crossings);
         // To the left it is where the names of the next marks go.
-        let to_the_left = if self.stands == Stands::Left {
+        let to_the_left = if self.stands == Stands::End {
             25.0
         } else {
             0.0
@@ -210,7 +208,7 @@ impl Label {
             (self.covers.left..of.0).contains(&mark.0) && (mark.1 - of.1).abs() < CROWD
         };
         let lines = match self.stands {
-            Stands::Left => marks.iter().filter(below).count(),
+            Stands::End => marks.iter().filter(below).count(),
             _ => 0,
         };
         let wanted = BESIDE + HALF_HEIGHT + 2.0 * STEP * lines as f64;
@@ -236,17 +234,11 @@ impl Label {
     }
 
     /// Writes the name, and the line to its mark.
-    pub(super) fn draw(
-        &self,
-        canvas: &mut Canvas,
-        name: &str,
-        colour: RGBColor,
-        line: RGBColor,
-    ) -> Result<(), PlotError> {
+    pub(super) fn draw(&self, canvas: &mut Canvas, name: &str, colour: Rgb, line: Rgb) {
         if let Some((mark, name)) = self.leader {
-            canvas.line(&[mark, name], &line, 0.7)?;
+            canvas.line(&[mark, name], line, 0.7);
         }
-        canvas.coloured_text(name, self.place, SIZE, self.stands, colour)
+        canvas.coloured_text(name, self.place, SIZE, self.stands, colour);
     }
 }
 
@@ -326,11 +318,11 @@ fn flag_places(mark: Place, name: &str, area: &Area) -> Vec<Label> {
         let height = |ring| BESIDE + HALF_HEIGHT + STEP * f64::from(ring);
         (0..RINGS).map(move |ring| Label::flag(mark, name, height(ring), stands))
     };
-    let right: Vec<Label> = flags(Stands::Right).collect();
+    let right: Vec<Label> = flags(Stands::Start).collect();
     if right.iter().any(|label| label.covers.right <= area.right) {
         return right;
     }
-    flags(Stands::Left).collect()
+    flags(Stands::End).collect()
 }
 
 /// Places all around, flags among them.
@@ -343,7 +335,7 @@ fn all_places(mark: Place, name: &str) -> Vec<Label> {
         let beside = move |&direction: &f64| Label::beside(mark, name, BESIDE + added, direction);
         let height = BESIDE + HALF_HEIGHT + added;
         let flags = [height, -height].into_iter().flat_map(move |height| {
-            [Stands::Right, Stands::Left].map(|stands| Label::flag(mark, name, height, stands))
+            [Stands::Start, Stands::End].map(|stands| Label::flag(mark, name, height, stands))
         });
         directions.iter().map(beside).chain(flags)
     };

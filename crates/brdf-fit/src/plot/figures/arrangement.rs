@@ -1,27 +1,39 @@
-//! One figure of a view, of one or several samples, arranged as the view says.
+//! The figure of a view of one or several samples: together, in panels or in the polar form.
 
 use brdf_core::AnyBrdf;
 
 use super::{polar, residuals, theory};
 use crate::measurement::Measurements;
 use crate::plot::axis::Axis;
-use crate::plot::canvas::{Canvas, Stands};
-use crate::plot::curves::{Curves, Sigma, Source, Styled};
+use crate::plot::canvas::Canvas;
+use crate::plot::curves::StandardError;
 use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
-use crate::plot::frame::{Area, Frame, WHOLE, draw_title, drawn_with_samples, shortened_within};
+use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::style::TEXT;
+use crate::plot::styled::{Curves, Source, Styled};
+use crate::plot::svg::Anchor;
+use crate::plot::text::{shortened, shortened_in_the_middle};
 use crate::plot::title::Title;
 use crate::plot::view::{Layout, Scale, View};
 
-/// The part of the height that the residuals take.
+/// The fraction of the height of a panel that the residuals take.
 const RESIDUALS: f64 = 0.28;
 
-/// Between two planes: room for the numbers at their axes.
+/// The horizontal and the vertical gap between panels: room for the numbers at their axes.
 const GAP: (f64, f64) = (46.0, 40.0);
 
-/// Room for the titles of the uppermost panels.
-const TITLES: f64 = 16.0;
+/// Room for the names of the uppermost panels.
+const NAMES: f64 = 16.0;
+
+/// The most letters above the figure.
+const LONGEST_TITLE: usize = 100;
+
+/// The most letters of the name of a sample below the figure.
+const LONGEST_NAME: usize = 50;
+
+/// The incidences of panels that differ by less than this angle in degrees share a panel.
+const SAME_INCIDENCE_DEG: f64 = 0.05;
 
 /// What a figure shows of one sample.
 pub struct Layer<'a> {
@@ -31,52 +43,32 @@ pub struct Layer<'a> {
     pub measurements: &'a Measurements,
     /// The theory.
     pub brdf: AnyBrdf,
-    /// The theory in words: the model and its parameters.
+    /// The theory as text: the model and its parameters.
     pub theory: String,
     /// The standard error of the theory in 1/sr at a geometry.
-    pub sigma: Sigma<'a>,
-    /// The incidences that are shown, psi in radians; `None` shows up to 8 of those with readings.
+    pub sigma: StandardError<'a>,
+    /// The incidence angles psi in radians that are shown; `None` shows up to 8 of those with
+    /// readings.
     pub incidences: Option<&'a [f64]>,
-    /// The family of colours, where there are several samples: see [`colour`](super::colour).
+    /// The family of colours, where there are several samples: see [`colour`](crate::plot::colour).
     pub family: Option<usize>,
 }
 
-/// One figure of a view, `view`, of one or several samples: together, in panels or in the polar
-/// form, with the residuals below where the view asks for them.
+/// The figure of one or several samples, arranged as `view` asks for: together, in panels or in the
+/// polar form, with or without the residuals below.
 pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
-    let several = layers.len() > 1;
-    let sources: Vec<Source> = layers
-        .iter()
-        .map(|layer| Source {
-            name: several.then_some(layer.name.as_str()),
-            measurements: layer.measurements,
-            brdf: &layer.brdf,
-            sigma: layer.sigma,
-            incidences: layer.incidences,
-            family: layer.family,
-        })
-        .collect();
-    let curves = Curves::of(&sources, view);
+    let curves = curves(layers, view);
     let title = title(layers);
     let axis = theory::axis(&curves, view.scale);
     let note = match (view.layout, view.scale) {
-        (Layout::Polar, _) => polar::note_on_lost(&curves),
+        (Layout::Polar, _) => polar::note_on_missing(&curves),
         (_, Scale::Linear) => None,
-        (_, Scale::Logarithmic) => theory::note_on_lost(&curves, &axis),
+        (_, Scale::Logarithmic) => theory::note_on_missing(&curves, &axis),
     };
     let svg = if view.layout == Layout::Polar {
-        polar::svg(&title, &curves, note.as_deref())?
+        polar::svg(&title, &curves, note.as_deref())
     } else {
-        drawn_with_samples(&title, |canvas| {
-            draw_title(canvas, &title)?;
-            for panel in panels(&curves) {
-                panel.draw(canvas, &curves, &axis)?;
-            }
-            if view.layout == Layout::Panels {
-                name_axes(canvas, view)?;
-            }
-            theory::legend(&curves, note.as_deref()).draw(canvas)
-        })?
+        panels_svg(&title, &curves, &axis, note.as_deref())
     };
     let note = note.map_or_else(String::new, |note| format!(" {note}."));
     Ok(Figure {
@@ -91,6 +83,34 @@ pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
     })
 }
 
+fn curves(layers: &[Layer], view: &View) -> Curves {
+    let several = layers.len() > 1;
+    let sources: Vec<Source> = layers
+        .iter()
+        .map(|layer| Source {
+            name: several.then_some(layer.name.as_str()),
+            measurements: layer.measurements,
+            brdf: &layer.brdf,
+            sigma: layer.sigma,
+            incidences: layer.incidences,
+            family: layer.family,
+        })
+        .collect();
+    Curves::of(&sources, view)
+}
+
+fn panels_svg(title: &Title, curves: &Curves, axis: &Axis, note: Option<&str>) -> String {
+    title.render(|canvas| {
+        for panel in panels(curves) {
+            panel.draw(canvas, curves, axis);
+        }
+        if curves.view.layout == Layout::Panels {
+            name_axes(canvas, &curves.view);
+        }
+        theory::legend(curves, note).draw(canvas);
+    })
+}
+
 fn title(layers: &[Layer]) -> Title {
     let join = |of: &dyn Fn(&Layer) -> String| layers.iter().map(of).collect::<Vec<_>>().join("; ");
     let theory = join(&|layer: &Layer| layer.theory.clone());
@@ -98,60 +118,56 @@ fn title(layers: &[Layer]) -> Title {
         [one] => {
             let sample = one.measurements.metadata.get("sample").unwrap_or_default();
             let colon = if sample.is_empty() { "" } else { ": " };
+            let name = format!("{}{colon}{sample}", one.title());
             Title {
-                sample: shortened(&format!("{}{colon}{sample}", one.title()), 100),
+                sample: shortened(&name, LONGEST_TITLE),
                 details: theory.clone(),
                 theory,
                 samples: Vec::new(),
             }
         }
-        _ => Title {
-            sample: shortened_within(&join(&|layer: &Layer| layer.title()), 100),
-            details: String::new(),
-            theory,
-            samples: layers.iter().map(Layer::line).collect(),
-        },
+        _ => {
+            let names = join(&|layer: &Layer| layer.title());
+            Title {
+                sample: shortened_in_the_middle(&names, LONGEST_TITLE),
+                details: String::new(),
+                theory,
+                samples: layers.iter().map(Layer::line).collect(),
+            }
+        }
     }
 }
 
 impl Layer<'_> {
     /// Its name and its wavelength.
     fn title(&self) -> String {
-        self.named(usize::MAX)
+        self.title_within(usize::MAX)
     }
 
-    /// What a line says of it: its name and wavelength, the model and its parameters.
+    /// Its line below the figure: name and wavelength, the model and its parameters.
     fn line(&self) -> String {
-        format!("{}: {}", self.named(50), self.theory)
+        format!("{}: {}", self.title_within(LONGEST_NAME), self.theory)
     }
 
-    fn named(&self, longest: usize) -> String {
+    fn title_within(&self, longest_name: usize) -> String {
         let wavelength = self.measurements.wavelengths().first().copied().flatten();
         let wavelength = wavelength.map_or_else(String::new, |w| format!(", {w} um"));
-        format!("{}{wavelength}", shortened_within(&self.name, longest))
+        let name = shortened_in_the_middle(&self.name, longest_name);
+        format!("{name}{wavelength}")
     }
 }
 
-/// A text that is not longer than so many letters.
-fn shortened(text: &str, longest: usize) -> String {
-    if text.chars().count() <= longest {
-        return text.to_owned();
-    }
-    let start: String = text.chars().take(longest - 3).collect();
-    format!("{start}...")
-}
-
-/// A plane of theory and experiment, with the residuals below it where they are shown.
+/// Theory and experiment within one area, with the residuals below where the view asks for them.
 struct Panel<'a> {
     area: Area,
     curves: Vec<&'a Styled>,
-    /// The incidence, where every panel has one of its own.
+    /// The incidence, where each panel shows a single one.
     name: Option<String>,
-    /// One of many: without the names of the axes, which stand once for all.
+    /// Whether it is one of several, whose axes are named once for all.
     small: bool,
 }
 
-/// All curves in one panel, or a panel for each incidence.
+/// One panel with all curves, or a panel for each incidence.
 fn panels(curves: &Curves) -> Vec<Panel<'_>> {
     let mut all: Vec<&Styled> = curves.all.iter().collect();
     if curves.view.layout != Layout::Panels {
@@ -163,16 +179,16 @@ fn panels(curves: &Curves) -> Vec<Panel<'_>> {
         }];
     }
     all.sort_by(|a, b| a.curve.psi.total_cmp(&b.curve.psi));
-    let same = |a: &&Styled, b: &&Styled| (b.curve.psi - a.curve.psi).to_degrees() < 0.05;
+    let same =
+        |a: &&Styled, b: &&Styled| (b.curve.psi - a.curve.psi).to_degrees() < SAME_INCIDENCE_DEG;
     let groups: Vec<Vec<&Styled>> = all.chunk_by(same).map(<[_]>::to_vec).collect();
-    let count = groups.len();
-    let columns = columns(count);
-    let rows = count.div_ceil(columns);
+    let columns = columns(groups.len());
+    let rows = groups.len().div_ceil(columns);
     groups
         .into_iter()
         .enumerate()
         .map(|(i, group)| Panel {
-            area: part(i % columns, columns, i / columns, rows),
+            area: cell((i % columns, columns), (i / columns, rows)),
             name: group.first().map(|styled| styled.curve.name()),
             curves: group,
             small: true,
@@ -180,24 +196,21 @@ fn panels(curves: &Curves) -> Vec<Panel<'_>> {
         .collect()
 }
 
-/// The names of the axes, once for all panels.
-fn name_axes(canvas: &mut Canvas, view: &View) -> Result<(), PlotError> {
-    let middle = |from: f64, to: f64| 0.5 * (from + to);
-    let below = (middle(WHOLE.left, WHOLE.right), WHOLE.bottom + 42.0);
-    canvas.text(&view.theta_name(), below, TEXT + 1.0, Stands::Centred)?;
-    let beside = (WHOLE.left - 66.0, middle(WHOLE.top, WHOLE.bottom));
+/// The names of the axes of all panels.
+fn name_axes(canvas: &mut Canvas, view: &View) {
+    WHOLE.draw_x_name(canvas, &view.theta_name());
     let residuals = if view.residuals {
         "; below: measured - theory"
     } else {
         ""
     };
     let name = format!("{}{residuals}", view.quantity.axis_name());
-    canvas.text(&name, beside, TEXT + 1.0, Stands::Upwards)
+    WHOLE.draw_y_name(canvas, &name);
 }
 
-/// So many columns that panels are somewhat wider than high.
-fn columns(count: usize) -> usize {
-    match count {
+/// The number of columns with which panels are somewhat wider than high.
+fn columns(panels: usize) -> usize {
+    match panels {
         0 | 1 => 1,
         2..=4 => 2,
         5..=9 => 3,
@@ -206,15 +219,15 @@ fn columns(count: usize) -> usize {
     }
 }
 
-/// A part of the figure.
-fn part(column: usize, columns: usize, row: usize, rows: usize) -> Area {
-    let along = |from: f64, to: f64, gap: f64, i: usize, count: usize| {
+/// The area of a panel, by the index and the number of its column and of its row.
+fn cell((column, columns): (usize, usize), (row, rows): (usize, usize)) -> Area {
+    let interval = |from: f64, to: f64, gap: f64, i: usize, count: usize| {
         let size = (to - from - gap * (count - 1) as f64) / count as f64;
         let start = from + (size + gap) * i as f64;
         (start, start + size)
     };
-    let (left, right) = along(WHOLE.left, WHOLE.right, GAP.0, column, columns);
-    let (top, bottom) = along(WHOLE.top + TITLES, WHOLE.bottom, GAP.1, row, rows);
+    let (left, right) = interval(WHOLE.left, WHOLE.right, GAP.0, column, columns);
+    let (top, bottom) = interval(WHOLE.top + NAMES, WHOLE.bottom, GAP.1, row, rows);
     Area {
         left,
         right,
@@ -224,9 +237,9 @@ fn part(column: usize, columns: usize, row: usize, rows: usize) -> Area {
 }
 
 impl Panel<'_> {
-    fn draw(&self, canvas: &mut Canvas, curves: &Curves, y: &Axis) -> Result<(), PlotError> {
+    fn draw(&self, canvas: &mut Canvas, curves: &Curves, y: &Axis) {
         let view = &curves.view;
-        let below = view.residuals.then(|| self.below());
+        let below = view.residuals.then(|| self.residuals_area());
         let frame = Frame {
             x: self.theta_axis(),
             y: y.clone(),
@@ -235,42 +248,39 @@ impl Panel<'_> {
                 ..self.area
             },
         };
-        let named = |name: &str| {
-            if self.small {
-                String::new()
-            } else {
-                name.to_owned()
-            }
-        };
-        let theta_name = named(&view.theta_name());
-        let above_name = if below.is_some() {
-            ""
-        } else {
-            theta_name.as_str()
-        };
-        frame.draw(canvas, above_name, &named(view.quantity.axis_name()))?;
-        theory::draw_curves(canvas, &frame, &self.curves, view)?;
+        let theta_name = self.axis_name(&view.theta_name());
+        let x_name: &str = if below.is_some() { "" } else { &theta_name };
+        frame.draw(canvas, x_name, &self.axis_name(view.quantity.axis_name()));
+        theory::draw_curves(canvas, &frame, &self.curves, view);
         if let Some(name) = &self.name {
-            let place = (frame.area.left + 5.0, frame.area.top - 9.0);
-            canvas.text(name, place, TEXT, Stands::Right)?;
+            let point = (frame.area.left + 5.0, frame.area.top - 9.0);
+            canvas.text(name, point, TEXT, Anchor::Start);
         }
-        let Some(area) = below else {
-            return Ok(());
-        };
-        let frame = Frame {
-            x: self.theta_axis(),
-            y: residuals::axis(curves),
-            area,
-        };
-        frame.draw(canvas, &theta_name, &named(residuals::RESIDUAL))?;
-        residuals::draw_residuals(canvas, &frame, &self.curves, view)
+        if let Some(area) = below {
+            let frame = Frame {
+                x: self.theta_axis(),
+                y: residuals::axis(curves),
+                area,
+            };
+            frame.draw(canvas, &theta_name, &self.axis_name(residuals::RESIDUAL));
+            residuals::draw_residuals(canvas, &frame, &self.curves, view);
+        }
+    }
+
+    /// The name of an axis; none in a small panel.
+    fn axis_name(&self, name: &str) -> String {
+        if self.small {
+            String::new()
+        } else {
+            name.to_owned()
+        }
     }
 
     fn theta_axis(&self) -> Axis {
         Axis::fixed(-90, 90, if self.small { 45 } else { 15 })
     }
 
-    fn below(&self) -> Area {
+    fn residuals_area(&self) -> Area {
         let height = self.area.bottom - self.area.top;
         Area {
             top: self.area.bottom - RESIDUALS * height,

@@ -1,4 +1,4 @@
-//! The figures: one file each, and all figures of a fit.
+//! The figures, a file for each of them, and all figures of a fit.
 
 mod arrangement;
 mod paper;
@@ -12,9 +12,9 @@ mod tradeoff;
 use brdf_core::{AnyBrdf, Geometry};
 
 use crate::measurement::Measurements;
-use crate::plot::curves::{Curves, Source};
 use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
+use crate::plot::styled::{Curves, Source};
 use crate::plot::title::Title;
 use crate::plot::view::View;
 use crate::stages::Fit;
@@ -26,18 +26,22 @@ pub use tradeoff::{TradePoint, trade_picture};
 /// The figures of a fit of one wavelength:
 ///
 /// - `theory-linear` and `theory-log`: readings and theory over the signed view angle;
-/// - `residuals`: measured less theory;
+/// - `residuals`: measured value minus theory;
 /// - `polar`: f_r as radius at the view angle;
 /// - `profile-k1`: the lowest E over k1;
 /// - `reflectance`: hemispherical reflectance over the incidence angle.
 ///
-/// `sigma` gives the standard error of the theory in 1/sr at a geometry, which is drawn as a band
-/// of one standard error to both sides; where it is not a positive number there is no band.
+/// `sigma` is the standard error of the theory in 1/sr at a geometry. It is drawn as a band of one
+/// standard error to both sides, which is interrupted where `sigma` is not a positive number.
 ///
-/// The first four show the readings in the plane of incidence, of up to 8 incidences; the caption
-/// says what is left out. Where no reading is in the plane they are left out altogether, the
-/// logarithmic one also where nothing is positive. The profile is left out where the fit has none,
+/// The first four kinds show the readings in the plane of incidence at up to 8 incidences; the
+/// caption lists what is left out. They are omitted where no reading lies in the plane, and the
+/// logarithmic figure also where no value is positive. The profile is omitted where the fit has none
 /// or no specular part.
+///
+/// # Errors
+///
+/// [`PlotError::Parameters`] where the parameters of the fit are outside the domain of the model.
 pub fn figures(
     measurements: &Measurements,
     fit: &Fit,
@@ -56,12 +60,12 @@ pub fn figures(
     let curves = Curves::of(&[source], &View::default());
     let mut figures = Vec::new();
     if !curves.all.is_empty() {
-        figures.push(theory::linear(&title, &curves)?);
-        figures.extend(theory::logarithmic(&title, &curves)?);
-        figures.push(residuals::figure(&title, &curves)?);
-        figures.push(polar::figure(&title, &curves)?);
+        figures.push(theory::linear(&title, &curves));
+        figures.extend(theory::logarithmic(&title, &curves));
+        figures.push(residuals::figure(&title, &curves));
+        figures.push(polar::figure(&title, &curves));
     }
-    figures.extend(profile::figure(&title, fit)?);
+    figures.extend(profile::figure(&title, fit));
     figures.push(reflectance::figure(&title, &brdf, fit)?);
     Ok(figures)
 }
@@ -106,7 +110,7 @@ mod tests {
         }
     }
 
-    /// The figures of readings with the fit of another scan: figures do not ask where it is from.
+    /// The figures of readings with the fit of another scan, which figures do not check.
     fn figures_of(readings: Vec<Measurement>) -> Vec<Figure> {
         let fit = fitted(&lacquer(), Model::Three);
         let measurements = Measurements::new("test", readings).unwrap();
@@ -119,7 +123,7 @@ mod tests {
         figures.iter().map(|figure| figure.name.as_str()).collect()
     }
 
-    /// Every figure is valid XML of the size it should have, and without what is not a number.
+    /// Checks that every figure is valid XML of the expected size without undefined numbers.
     fn check(figures: &[Figure]) {
         for figure in figures {
             let tree = Tree::from_str(&figure.svg, &Options::default()).unwrap();
@@ -139,7 +143,7 @@ mod tests {
     ];
 
     #[test]
-    fn a_fit_has_all_figures_with_every_model() {
+    fn a_fit_of_every_model_has_all_figures() {
         for model in Model::ALL {
             let fit = fitted(&lacquer(), model);
             let figures = figures(&lacquer(), &fit, None).unwrap();
@@ -153,14 +157,14 @@ mod tests {
     }
 
     #[test]
-    fn bands_and_error_bars_are_drawn_and_said() {
+    fn bands_and_error_bars_are_drawn_and_captioned() {
         let fit = fitted(&lacquer(), Model::Three);
         let mut measurements = lacquer();
         for reading in &mut measurements.readings {
             reading.sigma = Some(0.1 * reading.brdf);
         }
         let plain = figures(&measurements, &fit, None).unwrap();
-        // A tenth of the theory, and nothing usable close to grazing.
+        // A tenth of the theory, and undefined close to grazing.
         let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).unwrap();
         let sigma = |at: &Geometry| match at.cos_theta() {
             cos if cos < 0.1 => f64::NAN,
@@ -177,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn few_and_odd_readings_have_figures() {
+    fn few_and_extreme_readings_have_figures() {
         assert_eq!(names(&figures_of(vec![reading(30.0, -30.0, 0.2)])), ALL);
         let zeros = figures_of(
             (0..9)
@@ -204,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_positive_has_no_logarithmic_figure() {
+    fn without_positive_values_there_is_no_logarithmic_figure() {
         let mut fit = fitted(&lacquer(), Model::Lambert);
         fit.parameters.kd = 0.0;
         let measurements = Measurements::new("test", vec![reading(10.0, 5.0, 0.0)]).unwrap();
@@ -233,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn of_many_incidences_a_few_are_shown() {
+    fn only_some_of_many_incidences_are_shown() {
         let readings = (0..90).flat_map(|psi| {
             (-80..=80)
                 .step_by(20)
@@ -245,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn readings_without_end_do_not_swell_the_figure() {
+    fn very_many_readings_do_not_inflate_the_figure() {
         let many = (0..200_000).map(|i| reading(10.0, 8e-4 * f64::from(i) - 80.0, 0.1));
         let figures = figures_of(many.collect());
         assert!(figures[0].svg.len() < 1_000_000);
@@ -282,13 +286,13 @@ mod tests {
         );
         let image = Pixmap::decode_png(&std::fs::read(&files[1]).unwrap()).unwrap();
         assert_eq!((image.width(), image.height()), (1920, 1160));
-        // White ground, and letters: some pixels in the title's line are not white.
+        // The letters of the title are dark pixels on white.
         let title = image.pixels().iter().take(1920 * 60);
         assert!(title.filter(|pixel| pixel.red() < 128).count() > 50);
     }
 
     #[test]
-    fn what_cannot_be_written_is_named() {
+    fn a_folder_that_cannot_be_created_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("file");
         std::fs::write(&file, "").unwrap();

@@ -1,15 +1,15 @@
-//! Figs. 3 to 10 of the paper, drawn from its Table 1.
+//! Figs. 3 to 10 of Li, Yan and Wu (2002), drawn from the parameters of its Table 1.
 
 use brdf_core::published::{PUBLISHED, PublishedSample};
 use brdf_core::{AnyBrdf, Family, ModelParameters};
 
 use super::{polar, theory};
-use crate::plot::curves::Curves;
 use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
+use crate::plot::styled::Curves;
 use crate::plot::title::Title;
 
-/// The incidence angles where the paper has several, in degrees.
+/// The incidence angles in degrees of the figures with several.
 const SEVERAL: &[f64] = &[0.0, 15.0, 30.0, 45.0, 60.0, 75.0];
 
 /// A figure of the paper.
@@ -18,8 +18,8 @@ struct PaperFigure {
     sample: &'static str,
     wavelength_um: f64,
     psi_deg: &'static [f64],
-    /// What the paper leaves open.
-    open: &'static str,
+    /// A sentence on what the paper does not specify, with a blank before it.
+    unspecified: &'static str,
 }
 
 const NOTE: &str = "theory only: the readings were never published";
@@ -54,21 +54,25 @@ const fn of(
     sample: &'static str,
     wavelength_um: f64,
     psi_deg: &'static [f64],
-    open: &'static str,
+    unspecified: &'static str,
 ) -> PaperFigure {
     PaperFigure {
         number,
         sample,
         wavelength_um,
         psi_deg,
-        open,
+        unspecified,
     }
 }
 
-/// Figs. 3 to 10 of Li, Yan and Wu (2002) from the parameters of its Table 1, `figure-3` to
+/// Figs. 3 to 10 of Li, Yan and Wu (2002) from the parameters of its Table 1, named `figure-3` to
 /// `figure-10`: f_r as radius at the view angle, as in the paper, or for several incidences over the
-/// view angle on a logarithmic axis. Theory only: the measured points of the paper were
-/// never published.
+/// view angle on a logarithmic axis. They show the theory without readings, because the measured
+/// points of the paper were never published.
+///
+/// # Errors
+///
+/// Where brdf-core rejects the parameters of a row, which it does for none of them.
 pub fn paper_figures() -> Result<Vec<Figure>, PlotError> {
     let mut figures = Vec::new();
     for figure in &FIGURES {
@@ -76,47 +80,49 @@ pub fn paper_figures() -> Result<Vec<Figure>, PlotError> {
             .iter()
             .find(|row| row.sample == figure.sample && row.wavelength_um == figure.wavelength_um);
         if let Some(row) = row {
-            figures.push(drawn(figure, row)?);
+            figures.push(figure.draw(row)?);
         }
     }
     Ok(figures)
 }
 
-fn drawn(figure: &PaperFigure, row: &PublishedSample) -> Result<Figure, PlotError> {
-    let at = ModelParameters::three(row.parameters, row.n);
-    let brdf = AnyBrdf::new(Family::Paper, &at)?;
-    let curves = Curves::of_theory(&brdf, figure.psi_deg);
-    let title = title(figure, row);
-    let (form, svg) = if figure.psi_deg.len() == 1 {
-        (POLAR, polar::svg(&title, &curves, Some(NOTE))?)
-    } else {
-        (LOGARITHMIC, theory::of_theory(&title, &curves, NOTE)?)
-    };
-    let caption = format!(
-        "Fig. {} of Li, Yan and Wu (2002) from the parameters of its Table 1: {form}. {}, {}. \
-         Dashed: mirror directions. Theory only: the measured points were never published.{}",
-        figure.number, title.sample, title.details, figure.open
-    );
-    Ok(Figure {
-        name: format!("figure-{}", figure.number),
-        caption,
-        svg,
-    })
-}
+impl PaperFigure {
+    fn draw(&self, row: &PublishedSample) -> Result<Figure, PlotError> {
+        let at = ModelParameters::three(row.parameters, row.n);
+        let brdf = AnyBrdf::new(Family::Paper, &at)?;
+        let curves = Curves::of_theory(&brdf, self.psi_deg);
+        let title = self.title(row);
+        let (form, svg) = if self.psi_deg.len() == 1 {
+            (POLAR, polar::svg(&title, &curves, Some(NOTE)))
+        } else {
+            (LOGARITHMIC, theory::svg_of_theory(&title, &curves, NOTE))
+        };
+        let caption = format!(
+            "Fig. {} of Li, Yan and Wu (2002) from the parameters of its Table 1: {form}. {}, {}. \
+             Dashed: mirror directions. Theory only: the measured points were never published.{}",
+            self.number, title.sample, title.details, self.unspecified
+        );
+        Ok(Figure {
+            name: format!("figure-{}", self.number),
+            caption,
+            svg,
+        })
+    }
 
-fn title(figure: &PaperFigure, row: &PublishedSample) -> Title {
-    let parameters = row.parameters;
-    Title {
-        sample: format!(
-            "Fig. {}: sample {}, {} on {}",
-            figure.number, row.sample, row.coating, row.base
-        ),
-        details: format!(
-            "{} um, k2 = {}, kD = {}, k1 = {}, n = {}",
-            row.wavelength_um, parameters.k2, parameters.kd, parameters.k1, row.n
-        ),
-        theory: "the paper's model".to_owned(),
-        samples: Vec::new(),
+    fn title(&self, row: &PublishedSample) -> Title {
+        let parameters = row.parameters;
+        Title {
+            sample: format!(
+                "Fig. {}: sample {}, {} on {}",
+                self.number, row.sample, row.coating, row.base
+            ),
+            details: format!(
+                "{} um, k2 = {}, kD = {}, k1 = {}, n = {}",
+                row.wavelength_um, parameters.k2, parameters.kd, parameters.k1, row.n
+            ),
+            theory: "the paper's model".to_owned(),
+            samples: Vec::new(),
+        }
     }
 }
 
@@ -125,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_figures_are_drawn_and_say_that_they_are_theory() {
+    fn all_figures_are_drawn_and_their_captions_name_them_theory_only() {
         let figures = paper_figures().unwrap();
         let names: Vec<String> = (3..=10).map(|number| format!("figure-{number}")).collect();
         assert!(figures.iter().map(|figure| &figure.name).eq(&names));

@@ -1,23 +1,46 @@
-//! How sharply E tells k1: the lowest E over all other parameters at each k1 of the global check.
+//! How sharply the readings determine k1: the lowest E over all other parameters at each k1 of the
+//! global check.
 
 use crate::plot::axis::Axis;
-use crate::plot::canvas::{Canvas, drawn};
-use crate::plot::error::PlotError;
+use crate::plot::canvas::Canvas;
 use crate::plot::figure::Figure;
-use crate::plot::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use crate::plot::frame::{Frame, WHOLE};
+use crate::plot::legend::{Key, Legend};
 use crate::plot::palette::MarkShape;
-use crate::plot::style::{MAIN, POINTED_OUT};
-use crate::plot::title::{Title, short};
+use crate::plot::style::{EMPHASIS, MAIN};
+use crate::plot::text::four_digits;
+use crate::plot::title::Title;
 use crate::stages::Fit;
 
-/// E of a noise-free scan goes down to rounding: its axis ends so many decades below the top.
+/// The most decades of E, which decreases to the rounding error for a noise-free scan.
 const DECADES: i32 = 10;
 
-/// All decades of k1 and more.
+/// More than all decades of k1.
 const K1_DECADES: i32 = 20;
 
-/// The profile over k1; `None` where there is none, or nothing that k1 were the width of.
-pub(super) fn figure(title: &Title, fit: &Fit) -> Result<Option<Figure>, PlotError> {
+/// The profile over k1; `None` where the fit has none, or no specular part with a width.
+pub(super) fn figure(title: &Title, fit: &Fit) -> Option<Figure> {
+    let points = points(fit)?;
+    let k1 = points.iter().map(|point| point.0);
+    let errors = points.iter().map(|point| point.1).chain([fit.e_percent]);
+    let frame = Frame {
+        x: Axis::logarithmic(k1, K1_DECADES)?,
+        y: Axis::logarithmic(errors, DECADES)?,
+        area: WHOLE,
+    };
+    Some(Figure {
+        name: "profile-k1".to_owned(),
+        caption: format!(
+            "The lowest E over all other parameters at each k1 of the global check ({}). Mark: the \
+             fit.",
+            title.theory
+        ),
+        svg: title.render(|canvas| draw(canvas, &frame, &points, fit)),
+    })
+}
+
+/// k1 and E in percent, in ascending order of k1.
+fn points(fit: &Fit) -> Option<Vec<(f64, f64)>> {
     let mut points: Vec<(f64, f64)> = fit
         .global_check
         .iter()
@@ -26,51 +49,32 @@ pub(super) fn figure(title: &Title, fit: &Fit) -> Result<Option<Figure>, PlotErr
         .filter(|(k1, _)| *k1 > 0.0)
         .collect();
     if points.len() < 2 || fit.parameters.k2 == 0.0 {
-        return Ok(None);
+        return None;
     }
-    // The steps of the check are wide beside the minimum: the line goes through the fit, unless that
-    // is no minimum of E, as where the energy is limited or the loss is another.
+    // The steps of the check are wide beside the minimum: the line passes through the fit, unless the
+    // fit is no minimum of E, as with constrained energy or another loss function.
     if points.iter().all(|(_, error)| fit.e_percent <= *error) {
         points.push((fit.parameters.k1, fit.e_percent));
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
-    let k1 = Axis::logarithmic(points.iter().map(|point| point.0), K1_DECADES);
-    let errors = points.iter().map(|point| point.1).chain([fit.e_percent]);
-    let error = Axis::logarithmic(errors, DECADES);
-    let (Some(x), Some(y)) = (k1, error) else {
-        return Ok(None);
-    };
-    let frame = Frame { x, y, area: WHOLE };
-    Ok(Some(Figure {
-        name: "profile-k1".to_owned(),
-        caption: format!(
-            "The lowest E over all other parameters at each k1 of the global check ({}). Mark: the \
-             fit.",
-            title.theory
-        ),
-        svg: drawn(|canvas| draw(canvas, &frame, title, &points, fit))?,
-    }))
+    Some(points)
 }
 
-fn draw(
-    canvas: &mut Canvas,
-    frame: &Frame,
-    title: &Title,
-    points: &[(f64, f64)],
-    fit: &Fit,
-) -> Result<(), PlotError> {
-    draw_title(canvas, title)?;
-    frame.draw(canvas, "width k1 of the facet distribution", "lowest E / %")?;
+fn draw(canvas: &mut Canvas, frame: &Frame, points: &[(f64, f64)], fit: &Fit) {
+    frame.draw(canvas, "width k1 of the facet distribution", "lowest E / %");
     let (k1, error) = (fit.parameters.k1, fit.e_percent);
     if frame.x.contains(k1) {
-        frame.upright_dashes(canvas, k1, &POINTED_OUT)?;
+        frame.dashed_vertical(canvas, k1, EMPHASIS);
     }
-    frame.line(canvas, points.iter().copied(), &MAIN, 1.8)?;
+    frame.line(canvas, points.iter().copied(), MAIN, 1.8);
     if frame.contains((k1, error)) {
-        canvas.mark(frame.place((k1, error)), MarkShape::Circle, POINTED_OUT)?;
+        canvas.mark(frame.point((k1, error)), MarkShape::Circle, EMPHASIS);
     }
     let mut legend = Legend::default();
     legend.add(Key::Line(MAIN), "lowest E at k1");
-    legend.add(Key::Mark(POINTED_OUT), &format!("fit: k1 = {}", short(k1)));
-    legend.draw(canvas)
+    legend.add(
+        Key::Mark(EMPHASIS),
+        &format!("fit: k1 = {}", four_digits(k1)),
+    );
+    legend.draw(canvas);
 }

@@ -1,33 +1,37 @@
-//! What the theory leaves: measured less theory over the signed view angle.
+//! Residuals: measured value minus theory over the signed view angle.
 
-use plotters::style::Color;
-
-use super::theory::draw_mirror;
+use super::theory::draw_mirror_direction;
 use crate::plot::axis::Axis;
-use crate::plot::canvas::{Canvas, drawn};
-use crate::plot::curves::{Curves, Styled};
-use crate::plot::error::PlotError;
+use crate::plot::canvas::Canvas;
 use crate::plot::figure::Figure;
-use crate::plot::frame::{Frame, Key, Legend, draw_title};
-use crate::plot::style::{INK, ink};
+use crate::plot::frame::Frame;
+use crate::plot::legend::{Key, Legend};
+use crate::plot::style::INK;
+use crate::plot::styled::{Curves, Styled};
+use crate::plot::svg::Paint;
 use crate::plot::title::Title;
 use crate::plot::view::View;
 
 /// The name of the axis of residuals.
 pub(super) const RESIDUAL: &str = "measured - theory / (1/sr)";
 
-/// The residuals.
-pub(super) fn figure(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {
+/// The figure of the residuals.
+pub(super) fn figure(title: &Title, curves: &Curves) -> Figure {
     let frame = Frame::over_theta(axis(curves));
-    Ok(Figure {
+    Figure {
         name: "residuals".to_owned(),
         caption: format!(
             "Residuals: measured less theory ({}) over the view angle in the plane of incidence. \
              Dashed: mirror directions.{}",
             title.theory, curves.left_out
         ),
-        svg: drawn(|canvas| draw(canvas, &frame, title, curves))?,
-    })
+        svg: title.render(|canvas| {
+            frame.draw(canvas, &curves.view.theta_name(), RESIDUAL);
+            let all: Vec<&Styled> = curves.all.iter().collect();
+            draw_residuals(canvas, &frame, &all, &curves.view);
+            legend(curves).draw(canvas);
+        }),
+    }
 }
 
 /// The axis of the residuals with their error bars.
@@ -38,49 +42,35 @@ pub(super) fn axis(curves: &Curves) -> Axis {
     }))
 }
 
-fn draw(
-    canvas: &mut Canvas,
-    frame: &Frame,
-    title: &Title,
-    curves: &Curves,
-) -> Result<(), PlotError> {
-    draw_title(canvas, title)?;
-    frame.draw(canvas, &curves.view.theta_name(), RESIDUAL)?;
-    let all: Vec<&Styled> = curves.all.iter().collect();
-    draw_residuals(canvas, frame, &all, &curves.view)?;
+fn legend(curves: &Curves) -> Legend {
     let mut legend = Legend::default();
     legend.add_curves(&curves.all, true);
-    if curves.error_bars() {
+    if curves.has_error_bars() {
         legend.add(Key::ErrorBar, "1 sigma of a reading");
     }
     legend.add(Key::Dashes(INK), "mirror direction");
-    legend.draw(canvas)
+    legend
 }
 
 /// The residuals within the axes.
-pub(super) fn draw_residuals(
-    canvas: &mut Canvas,
-    frame: &Frame,
-    curves: &[&Styled],
-    view: &View,
-) -> Result<(), PlotError> {
-    frame.level(canvas, 0.0, &INK)?;
+pub(super) fn draw_residuals(canvas: &mut Canvas, frame: &Frame, curves: &[&Styled], view: &View) {
+    frame.horizontal(canvas, 0.0, INK);
     for styled in curves {
-        let colour = ink(styled.colour);
-        draw_mirror(canvas, frame, styled, view)?;
+        draw_mirror_direction(canvas, frame, styled, view);
         let readings = &styled.curve.readings;
         let line = readings.iter().map(|r| (r.theta_deg, r.residual()));
-        frame.line(canvas, line, &colour.mix(0.5), 1.0)?;
+        let faint = Paint::translucent(styled.colour, 0.5);
+        frame.line(canvas, line, faint, 1.0);
         for reading in readings {
             let (theta, residual) = (reading.theta_deg, reading.residual());
             if let Some(sigma) = reading.sigma {
                 let ends = (residual - sigma, residual + sigma);
-                frame.error_bar(canvas, theta, ends, colour)?;
+                frame.error_bar(canvas, theta, ends, styled.colour);
             }
             if frame.contains((theta, residual)) {
-                canvas.mark(frame.place((theta, residual)), styled.mark, colour)?;
+                let point = frame.point((theta, residual));
+                canvas.mark(point, styled.mark, styled.colour);
             }
         }
     }
-    Ok(())
 }

@@ -1,46 +1,44 @@
-//! Theory against experiment: f_r over the signed view angle, for each incidence.
-
-use plotters::style::Color;
+//! Theory against experiment: the BRDF over the signed view angle, for each incidence.
 
 use crate::plot::axis::Axis;
 use crate::plot::canvas::Canvas;
-use crate::plot::curves::{Curves, DECADES, Styled, lower_ends, values};
-use crate::plot::error::PlotError;
+use crate::plot::curves::{DECADES, lower_ends, values};
 use crate::plot::figure::Figure;
-use crate::plot::frame::{Frame, Key, Legend, draw_title, drawn_with_samples};
-use crate::plot::style::{INK, ink};
+use crate::plot::frame::Frame;
+use crate::plot::legend::{Key, Legend};
+use crate::plot::style::INK;
+use crate::plot::styled::{Curves, Styled};
+use crate::plot::svg::Paint;
 use crate::plot::title::Title;
 use crate::plot::view::{Scale, View};
 use crate::words::counted;
 
-/// On a linear axis.
-pub(super) fn linear(title: &Title, curves: &Curves) -> Result<Figure, PlotError> {
+/// The figure with a linear axis.
+pub(super) fn linear(title: &Title, curves: &Curves) -> Figure {
     let axis = linear_axis(curves);
-    Ok(Figure {
+    Figure {
         name: "theory-linear".to_owned(),
         caption: caption(title, curves, "linear", ""),
-        svg: svg(title, curves, axis, None)?,
-    })
+        svg: svg(title, curves, axis, None),
+    }
 }
 
-/// On a logarithmic axis; `None` where nothing is positive.
-pub(super) fn logarithmic(title: &Title, curves: &Curves) -> Result<Option<Figure>, PlotError> {
-    let Some(axis) = Axis::logarithmic(values(curves.plain()), DECADES) else {
-        return Ok(None);
-    };
-    let note = note_on_lost(curves, &axis);
+/// The figure with a logarithmic axis; `None` where no value is positive.
+pub(super) fn logarithmic(title: &Title, curves: &Curves) -> Option<Figure> {
+    let axis = Axis::logarithmic(values(curves.plain()), DECADES)?;
+    let note = note_on_missing(curves, &axis);
     let sentence = note
         .as_ref()
         .map_or_else(String::new, |note| format!(" {note}."));
-    Ok(Some(Figure {
+    Some(Figure {
         name: "theory-log".to_owned(),
         caption: caption(title, curves, "logarithmic", &sentence),
-        svg: svg(title, curves, axis, note.as_deref())?,
-    }))
+        svg: svg(title, curves, axis, note.as_deref()),
+    })
 }
 
-/// The drawing of the theory alone on a logarithmic axis.
-pub(super) fn of_theory(title: &Title, curves: &Curves, note: &str) -> Result<String, PlotError> {
+/// The drawing of the theory without readings on a logarithmic axis.
+pub(super) fn svg_of_theory(title: &Title, curves: &Curves, note: &str) -> String {
     svg(title, curves, axis(curves, Scale::Logarithmic), Some(note))
 }
 
@@ -57,18 +55,24 @@ pub(super) fn axis(curves: &Curves, scale: Scale) -> Axis {
     logarithmic.unwrap_or_else(|| linear_axis(curves))
 }
 
-fn svg(title: &Title, curves: &Curves, y: Axis, note: Option<&str>) -> Result<String, PlotError> {
+fn svg(title: &Title, curves: &Curves, y: Axis, note: Option<&str>) -> String {
     let frame = Frame::over_theta(y);
-    drawn_with_samples(title, |canvas| draw(canvas, &frame, title, curves, note))
+    let view = &curves.view;
+    title.render(|canvas| {
+        frame.draw(canvas, &view.theta_name(), view.quantity.axis_name());
+        let all: Vec<&Styled> = curves.all.iter().collect();
+        draw_curves(canvas, &frame, &all, view);
+        legend(curves, note).draw(canvas);
+    })
 }
 
 fn caption(title: &Title, curves: &Curves, axis: &str, more: &str) -> String {
-    let error_bars = if curves.error_bars() {
+    let error_bars = if curves.has_error_bars() {
         " with their standard deviation"
     } else {
         ""
     };
-    let bands = if curves.bands() {
+    let bands = if curves.has_bands() {
         ", with a band of one standard error to both sides"
     } else {
         ""
@@ -80,8 +84,8 @@ fn caption(title: &Title, curves: &Curves, axis: &str, more: &str) -> String {
     )
 }
 
-/// What of the readings a logarithmic axis cannot show.
-pub(super) fn note_on_lost(curves: &Curves, axis: &Axis) -> Option<String> {
+/// A note on the readings that a logarithmic axis cannot show, if there are any.
+pub(super) fn note_on_missing(curves: &Curves, axis: &Axis) -> Option<String> {
     let values = curves.readings().map(|reading| reading.value);
     let below = values.filter(|value| *value > 0.0 && *value < axis.low());
     let notes = [
@@ -90,89 +94,69 @@ pub(super) fn note_on_lost(curves: &Curves, axis: &Axis) -> Option<String> {
     ]
     .into_iter()
     .filter(|(count, _)| *count > 0)
-    .map(|(count, what)| format!("{} {what} not shown", counted(count, "reading")));
+    .map(|(count, which)| format!("{} {which} not shown", counted(count, "reading")));
     let notes: Vec<String> = notes.collect();
     (!notes.is_empty()).then(|| notes.join(", "))
 }
 
-fn draw(
-    canvas: &mut Canvas,
-    frame: &Frame,
-    title: &Title,
-    curves: &Curves,
-    note: Option<&str>,
-) -> Result<(), PlotError> {
-    draw_title(canvas, title)?;
-    let names = (curves.view.theta_name(), curves.view.quantity.axis_name());
-    frame.draw(canvas, &names.0, names.1)?;
-    let all: Vec<&Styled> = curves.all.iter().collect();
-    draw_curves(canvas, frame, &all, &curves.view)?;
-    legend(curves, note).draw(canvas)
-}
-
-/// Mirror directions, bands, readings and theory within the axes.
-pub(super) fn draw_curves(
-    canvas: &mut Canvas,
-    frame: &Frame,
-    curves: &[&Styled],
-    view: &View,
-) -> Result<(), PlotError> {
+/// Mirror directions, error bands, readings and theory within the axes.
+pub(super) fn draw_curves(canvas: &mut Canvas, frame: &Frame, curves: &[&Styled], view: &View) {
     for styled in curves {
-        draw_mirror(canvas, frame, styled, view)?;
+        draw_mirror_direction(canvas, frame, styled, view);
         for band in styled.curve.bands() {
-            frame.band(canvas, &band, ink(styled.colour))?;
+            frame.band(canvas, &band, styled.colour);
         }
     }
     for styled in curves {
-        draw_readings(canvas, frame, styled)?;
+        draw_readings(canvas, frame, styled);
     }
-    // Above the readings, which may be so dense that they would hide the lines.
+    // Last, because dense readings would hide the lines.
     for styled in curves {
         let line = styled.curve.theory.iter().map(|t| (t.theta_deg, t.value));
-        frame.line(canvas, line, &ink(styled.colour), 1.8)?;
+        frame.line(canvas, line, styled.colour, 1.8);
     }
-    Ok(())
 }
 
-/// The mirror direction of a curve, where the view has it.
-pub(super) fn draw_mirror(
+/// The mirror direction of a curve, where it lies in the plane of the view.
+pub(super) fn draw_mirror_direction(
     canvas: &mut Canvas,
     frame: &Frame,
     styled: &Styled,
     view: &View,
-) -> Result<(), PlotError> {
-    match view.mirror_deg(styled.curve.psi) {
-        Some(mirror) => frame.upright_dashes(canvas, mirror, &ink(styled.colour).mix(0.6)),
-        None => Ok(()),
+) {
+    if let Some(mirror_deg) = view.mirror_deg(styled.curve.psi) {
+        let paint = Paint::translucent(styled.colour, 0.6);
+        frame.dashed_vertical(canvas, mirror_deg, paint);
     }
 }
 
-fn draw_readings(canvas: &mut Canvas, frame: &Frame, styled: &Styled) -> Result<(), PlotError> {
-    let colour = ink(styled.colour);
+fn draw_readings(canvas: &mut Canvas, frame: &Frame, styled: &Styled) {
     for reading in &styled.curve.readings {
         let (theta, value) = (reading.theta_deg, reading.value);
         if let Some(sigma) = reading.sigma {
-            frame.error_bar(canvas, theta, (value - sigma, value + sigma), colour)?;
+            let ends = (value - sigma, value + sigma);
+            frame.error_bar(canvas, theta, ends, styled.colour);
         }
         if frame.contains((theta, value)) {
-            canvas.mark(frame.place((theta, value)), styled.mark, colour)?;
+            let point = frame.point((theta, value));
+            canvas.mark(point, styled.mark, styled.colour);
         }
     }
-    Ok(())
 }
 
 /// The legend of the figures of readings and theory.
 pub(super) fn legend(curves: &Curves, note: Option<&str>) -> Legend {
     let mut legend = Legend::default();
-    legend.add_curves(&curves.all, curves.measured());
-    if curves.measured() {
+    let has_readings = curves.has_readings();
+    legend.add_curves(&curves.all, has_readings);
+    if has_readings {
         legend.add(Key::Mark(INK), "reading");
         legend.add(Key::Line(INK), "theory");
     }
-    if curves.error_bars() {
+    if curves.has_error_bars() {
         legend.add(Key::ErrorBar, "1 sigma of a reading");
     }
-    if curves.bands() {
+    if curves.has_bands() {
         legend.add(Key::Band, "1 sigma of theory");
     }
     if curves.view.in_plane() {

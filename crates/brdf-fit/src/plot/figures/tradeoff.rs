@@ -1,23 +1,24 @@
 //! What a choice costs against what it errs: points on two logarithmic axes, with the Pareto front.
 
-use plotters::style::RGBColor;
-
 use crate::plot::axis::Axis;
-use crate::plot::canvas::{Canvas, Place, drawn};
+use crate::plot::canvas::{Canvas, Point as Place};
 use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
-use crate::plot::frame::{Frame, Key, Legend, WHOLE, draw_title};
+use crate::plot::frame::{Frame, WHOLE};
 use crate::plot::labels::{Label, placed};
+use crate::plot::legend::{Key, Legend};
 use crate::plot::palette::MarkShape;
-use crate::plot::style::{INK, MAIN, POINTED_OUT};
-use crate::plot::title::{Title, shortened};
+use crate::plot::style::{EMPHASIS, INK, MAIN};
+use crate::plot::svg::Rgb;
+use crate::plot::text::shortened;
+use crate::plot::title::{LONGEST_SAMPLE, Title};
 use crate::words::counted;
 
 /// All decades of the costs and errors of a trade.
 const DECADES: i32 = 40;
 
 /// What is dominated.
-const DOMINATED: RGBColor = RGBColor(140, 140, 140);
+const DOMINATED: Rgb = [140, 140, 140];
 
 /// One choice of a trade.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,15 +36,15 @@ pub struct TradePoint {
 }
 
 impl TradePoint {
-    fn colour(&self) -> RGBColor {
+    fn colour(&self) -> Rgb {
         match (self.chosen, self.pareto) {
-            (true, _) => POINTED_OUT,
+            (true, _) => EMPHASIS,
             (false, true) => MAIN,
             (false, false) => DOMINATED,
         }
     }
 
-    fn name_colour(&self) -> RGBColor {
+    fn name_colour(&self) -> Rgb {
         match self.colour() {
             DOMINATED => INK,
             colour => colour,
@@ -73,7 +74,7 @@ pub fn trade_picture(
         left_out: points.len() - shown.len(),
         labels: Vec::new(),
         title: Title {
-            sample: shortened(title),
+            sample: shortened(title, LONGEST_SAMPLE),
             details: format!("{y_title} against {x_title}"),
             theory: String::new(),
             samples: Vec::new(),
@@ -85,7 +86,7 @@ pub fn trade_picture(
     Ok(Figure {
         name: "trade".to_owned(),
         caption: picture.caption(),
-        svg: drawn(|canvas| picture.draw(canvas))?,
+        svg: picture.title.render(|canvas| picture.draw(canvas)),
     })
 }
 
@@ -107,7 +108,7 @@ fn frame(shown: &[&TradePoint]) -> Frame {
 
 /// Where a point is; below the axis is at its lower edge.
 fn place(frame: &Frame, point: &TradePoint) -> Place {
-    frame.place((point.x, point.y.max(frame.y.low())))
+    frame.point((point.x, point.y.max(frame.y.low())))
 }
 
 struct Picture<'a> {
@@ -127,7 +128,7 @@ impl Picture<'_> {
         let front: Vec<Place> = self
             .front()
             .into_iter()
-            .map(|at| self.frame.place(at))
+            .map(|at| self.frame.point(at))
             .collect();
         let lines: Vec<(Place, Place)> = front.windows(2).map(|two| (two[0], two[1])).collect();
         placed(&marks, &lines, &self.frame.area)
@@ -167,38 +168,35 @@ impl Picture<'_> {
         .collect()
     }
 
-    fn draw(&self, canvas: &mut Canvas) -> Result<(), PlotError> {
+    fn draw(&self, canvas: &mut Canvas) {
         let [x_name, y_name] = self.axes;
-        draw_title(canvas, &self.title)?;
-        self.frame.draw(canvas, x_name, y_name)?;
-        self.frame
-            .line(canvas, self.front().into_iter(), &MAIN, 1.5)?;
+        self.frame.draw(canvas, x_name, y_name);
+        self.frame.line(canvas, self.front().into_iter(), MAIN, 1.5);
         for (point, label) in self.shown.iter().zip(&self.labels) {
             if let Some(label) = label {
-                label.draw(canvas, &point.label, point.name_colour(), DOMINATED)?;
+                label.draw(canvas, &point.label, point.name_colour(), DOMINATED);
             }
         }
         let (rest, best): (Vec<_>, Vec<_>) =
             self.shown.iter().partition(|p| p.colour() == DOMINATED);
         for point in rest.into_iter().chain(best) {
-            self.mark(canvas, point)?;
+            self.mark(canvas, point);
         }
-        self.legend().draw(canvas)
+        self.legend().draw(canvas);
     }
 
-    fn mark(&self, canvas: &mut Canvas, point: &TradePoint) -> Result<(), PlotError> {
+    fn mark(&self, canvas: &mut Canvas, point: &TradePoint) {
         let at = place(&self.frame, point);
-        canvas.mark(at, MarkShape::Circle, point.colour())?;
+        canvas.mark(at, MarkShape::Circle, point.colour());
         if point.chosen {
-            canvas.line(&ring(at), &POINTED_OUT, 1.2)?;
+            canvas.line(&ring(at), EMPHASIS, 1.2);
         }
-        Ok(())
     }
 
     fn legend(&self) -> Legend {
         let mut legend = Legend::default();
         if self.shown.iter().any(|point| point.chosen) {
-            legend.add(Key::Mark(POINTED_OUT), "chosen");
+            legend.add(Key::Mark(EMPHASIS), "chosen");
         }
         legend.add(Key::Curve(MAIN, Some(MarkShape::Circle)), "Pareto front");
         legend.add(Key::Mark(DOMINATED), "dominated");

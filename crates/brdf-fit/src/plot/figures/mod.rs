@@ -299,14 +299,17 @@ mod tests {
         let message = write_figures(&[], &file.join("sub"), "a")
             .unwrap_err()
             .to_string();
-        assert!(message.contains("cannot be made a folder"), "{message}");
+        assert!(
+            message.contains("sub: cannot create the output folder"),
+            "{message}"
+        );
     }
 
     #[test]
     fn a_scale_without_pixels_is_an_error() {
         let figure = &paper_figures().unwrap()[0];
         for scale in [0.0, -1.0, 1e9, f32::NAN, f32::INFINITY] {
-            assert!(matches!(figure.png(scale), Err(PlotError::Scale(_))));
+            assert!(matches!(figure.png(scale), Err(PlotError::Scale { .. })));
         }
     }
 }

@@ -1,8 +1,8 @@
 //! What a figure is drawn on: lines, areas, marks and text, in the units of the figure.
 
-use super::palette::MarkShape;
+use super::palette::{MarkShape, Rgb};
 use super::style::{INK, SIZE};
-use super::svg::{Anchor, Coordinates, Document, Paint, Rgb, Text};
+use super::svg::{Anchor, Coordinates, Document, Paint, Text};
 
 /// Coordinates of the SVG in a unit of the figure. They are whole numbers: with one for each unit,
 /// curves would be staircases.

@@ -4,8 +4,9 @@
 use super::axis::Axis;
 use super::canvas::{Canvas, Point};
 use super::clip::clip;
+use super::palette::Rgb;
 use super::style::{BAND, FINE_GRID, GRID, INK, TEXT};
-use super::svg::{Anchor, Paint, Rgb};
+use super::svg::{Anchor, Paint};
 
 /// The smallest distance between two numbers at the vertical axis.
 const NUMBER_SPACING: f64 = 15.0;

@@ -2,11 +2,11 @@
 
 use super::canvas::{Canvas, Point};
 use super::frame::WHOLE;
-use super::palette::MarkShape;
+use super::palette::{MarkShape, Rgb};
 use super::selection::evenly;
 use super::style::{BAND, INK, LINE_SPACING, SIZE, TEXT, WHITE};
 use super::styled::Styled;
-use super::svg::{Anchor, Paint, Rgb};
+use super::svg::{Anchor, Paint};
 use super::text::{shortened_in_the_middle, wrapped};
 
 /// The left edge of the legend.

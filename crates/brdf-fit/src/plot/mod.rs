@@ -1,5 +1,6 @@
-//! The pictures of a fit: theory against experiment, residuals, the polar form of the paper, the
-//! profile of E over k1 and the reflectance; and the paper's own figures from its Table 1.
+//! Figures of a fit as SVG and PNG: theory against experiment, residuals, the polar form of the
+//! paper, the profile of E over k1 and the reflectance; the paper's own figures from its Table 1; and
+//! cost against error of a trade-off.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -19,9 +20,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The data flow one way: a `view` says how data are looked at, a `selection` which readings are
-//! shown, `curves` what of the theory stands beside them, for a screen as for a figure; a figure's
-//! file draws it in a `frame` on a `canvas`, `raster` makes a PNG of the SVG.
+//! The data flow in one direction. [`View`] determines how the data are plotted, [`Selection`] which
+//! readings are shown, and [`curves()`] adds the theory; screens and figures share these three. Each
+//! figure has a file below `figures`, which draws within the axes of a `frame` on a `canvas`, the
+//! `svg` writer produces the document, and `png` converts it.
 
 mod axis;
 mod canvas;
@@ -31,7 +33,6 @@ mod error;
 mod figure;
 mod figures;
 mod frame;
-mod labels;
 mod legend;
 mod palette;
 mod png;

@@ -1,6 +1,6 @@
 //! Sizes and colours of everything but the curves.
 
-use super::svg::Rgb;
+use super::palette::Rgb;
 
 /// Size of a figure, in the units of its SVG.
 pub(super) const SIZE: (u32, u32) = (960, 580);

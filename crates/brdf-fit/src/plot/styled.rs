@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use brdf_core::AnyBrdf;
 
 use super::curves::{Curve, FIGURE_COLUMNS, Reading, StandardError, curves};
-use super::palette::{FEW_CURVES, Ground, MarkShape, colour, mark};
+use super::palette::{FEW_CURVES, Ground, MarkShape, Rgb, colour, mark};
 use super::selection::{Selection, evenly};
 use super::view::View;
 use crate::measurement::Measurements;
@@ -17,7 +17,7 @@ pub(super) struct Styled {
     pub(super) curve: Curve,
     /// The name of its sample, where there are several.
     pub(super) sample: Option<String>,
-    pub(super) colour: [u8; 3],
+    pub(super) colour: Rgb,
     pub(super) mark: MarkShape,
 }
 

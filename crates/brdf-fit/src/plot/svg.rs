@@ -2,11 +2,10 @@
 
 use std::fmt::{self, Write as _};
 
+use super::palette::Rgb;
+
 /// A position in whole coordinates, from the upper left corner.
 pub(super) type Coordinates = (i32, i32);
-
-/// Red, green and blue.
-pub(super) type Rgb = [u8; 3];
 
 /// A colour with its opacity.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,37 +1,69 @@
-//! What a choice costs against what it errs: points on two logarithmic axes, with the Pareto front.
+//! Cost against error of several choices on two logarithmic axes, with their Pareto front.
+//!
+//! The marks have numbers; the names of the choices are in a key below the axes.
 
 use crate::plot::axis::Axis;
-use crate::plot::canvas::{Canvas, Point as Place};
+use crate::plot::canvas::{Canvas, Point, render};
 use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
-use crate::plot::frame::{Frame, WHOLE};
-use crate::plot::labels::{Label, placed};
+use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::legend::{Key, Legend};
-use crate::plot::palette::MarkShape;
-use crate::plot::style::{EMPHASIS, INK, MAIN};
-use crate::plot::svg::Rgb;
+use crate::plot::palette::{MarkShape, Rgb};
+use crate::plot::style::{EMPHASIS, INK, MAIN, SIZE, TEXT};
+use crate::plot::svg::Anchor;
 use crate::plot::text::shortened;
-use crate::plot::title::{LONGEST_SAMPLE, Title};
+use crate::plot::title::{LEFT, LONGEST_SAMPLE, Title};
 use crate::words::counted;
 
-/// All decades of the costs and errors of a trade.
+/// More than all decades of costs and errors.
 const DECADES: i32 = 40;
 
-/// What is dominated.
+/// The colour of a choice that is not on the Pareto front.
 const DOMINATED: Rgb = [140, 140, 140];
 
-/// One choice of a trade.
+/// Size of the numbers beside the marks.
+const NUMBER: f64 = 11.0;
+
+/// Half the width and half the height of a number of two digits.
+const HALF_NUMBER: (f64, f64) = (7.5, 5.5);
+
+/// Half the side of the square that a mark covers.
+const HALF_MARK: f64 = 3.0;
+
+/// The most numbers that are placed above each other.
+const MOST_STACKED: u32 = 12;
+
+/// Distance of the lines of the key.
+const KEY_SPACING: f64 = 18.0;
+
+/// Width of an average letter of the key, in units of its size; a wide estimate, because the typeface
+/// is the reader's.
+const LETTER: f64 = 0.56;
+
+/// From the left edge of a column of the key to the names.
+const NAME_INDENT: f64 = 32.0;
+
+/// Between two columns of the key.
+const COLUMN_GAP: f64 = 12.0;
+
+/// The most columns of the key.
+const MOST_COLUMNS: usize = 4;
+
+/// The most letters of a name in the key.
+const LONGEST_NAME: usize = 100;
+
+/// One choice of a trade-off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TradePoint {
     /// Its name.
     pub label: String,
-    /// What it costs, in the unit of the axis; positive.
+    /// Its cost, in the unit of the axis; positive.
     pub x: f64,
-    /// How far it errs; zero is shown at the lower edge.
+    /// Its error; zero is shown at the lower edge.
     pub y: f64,
-    /// Whether it is on the Pareto front: see [`pareto`](crate::trade::pareto::pareto).
+    /// Whether it is on the Pareto front: no other choice has a lower cost and a lower error.
     pub pareto: bool,
-    /// Whether it is the one that is taken.
+    /// Whether it is the choice that was made.
     pub chosen: bool,
 }
 
@@ -44,102 +76,80 @@ impl TradePoint {
         }
     }
 
-    fn name_colour(&self) -> Rgb {
+    fn text_colour(&self) -> Rgb {
         match self.colour() {
             DOMINATED => INK,
             colour => colour,
         }
     }
 
-    /// Whether logarithmic axes have a place for it; zero error has one.
+    /// Whether it has a position on logarithmic axes; an error of zero has one at the edge.
     fn can_be_shown(&self) -> bool {
         self.x > 0.0 && self.x.is_finite() && self.y >= 0.0 && self.y.is_finite()
     }
 }
 
-/// The picture of a trade: what each choice costs (`x_title`) against how far it errs (`y_title`),
-/// both logarithmic, the Pareto front as a step line and the chosen point with a ring.
+/// The figure of a trade-off: the cost of each choice (`x_title`) against its error (`y_title`), both
+/// logarithmic, with the Pareto front as a step line and a ring around the chosen point. The marks
+/// are numbered in ascending order of cost; a key below the axes has the names.
 ///
-/// Errors of zero stand at the lower edge, which the legend says. Costs that are not positive,
-/// negative errors, and what is not finite, have no place: legend and caption count them.
+/// Errors of zero are at the lower edge, which the legend notes. Choices with a cost that is not
+/// positive, a negative error, or a value that is not finite cannot be shown; legend and caption
+/// count them.
 pub fn trade_picture(
     points: &[TradePoint],
     x_title: &str,
     y_title: &str,
     title: &str,
 ) -> Result<Figure, PlotError> {
-    let shown: Vec<&TradePoint> = points.iter().filter(|p| p.can_be_shown()).collect();
-    let mut picture = Picture {
-        frame: frame(&shown),
-        left_out: points.len() - shown.len(),
-        labels: Vec::new(),
-        title: Title {
-            sample: shortened(title, LONGEST_SAMPLE),
-            details: format!("{y_title} against {x_title}"),
-            theory: String::new(),
-            samples: Vec::new(),
-        },
-        axes: [x_title, y_title],
-        shown,
-    };
-    picture.labels = picture.placed_labels();
+    let trade_off = TradeOff::of(points, [x_title, y_title], title);
     Ok(Figure {
         name: "trade".to_owned(),
-        caption: picture.caption(),
-        svg: picture.title.render(|canvas| picture.draw(canvas)),
+        caption: trade_off.caption(),
+        svg: trade_off.svg(),
     })
 }
 
-/// The axes: every positive value, and room below the smallest error for those that are zero.
+/// The axes: all positive values, and room below the smallest error for errors of zero.
 fn frame(shown: &[&TradePoint]) -> Frame {
     let costs = shown.iter().map(|point| point.x);
     let errors = shown.iter().map(|point| point.y);
     let positive = errors.filter(|&y| y > 0.0);
     let lowest = positive.clone().fold(f64::INFINITY, f64::min);
     let room = (0.2 * lowest).is_finite().then_some(0.2 * lowest);
-    // Where there is nothing, the axes are there all the same.
-    let or_one = |axis: Option<Axis>| axis.unwrap_or_else(|| Axis::fixed(0, 1, 1));
+    let or_default = |axis: Option<Axis>| axis.unwrap_or_else(|| Axis::fixed(0, 1, 1));
     Frame {
-        x: or_one(Axis::logarithmic(costs, DECADES)),
-        y: or_one(Axis::logarithmic(positive.chain(room), DECADES)),
+        x: or_default(Axis::logarithmic(costs, DECADES)),
+        y: or_default(Axis::logarithmic(positive.chain(room), DECADES)),
         area: WHOLE,
     }
 }
 
-/// Where a point is; below the axis is at its lower edge.
-fn place(frame: &Frame, point: &TradePoint) -> Place {
-    frame.point((point.x, point.y.max(frame.y.low())))
-}
-
-struct Picture<'a> {
+struct TradeOff<'a> {
+    /// In ascending order of cost.
     shown: Vec<&'a TradePoint>,
     left_out: usize,
     frame: Frame,
-    labels: Vec<Option<Label>>,
     title: Title,
     axes: [&'a str; 2],
 }
 
-impl Picture<'_> {
-    fn placed_labels(&self) -> Vec<Option<Label>> {
-        let named = self.shown.iter();
-        let named = named.map(|point| (place(&self.frame, point), point.label.as_str()));
-        let marks: Vec<(Place, &str)> = named.collect();
-        let front: Vec<Place> = self
-            .front()
-            .into_iter()
-            .map(|at| self.frame.point(at))
-            .collect();
-        let lines: Vec<(Place, Place)> = front.windows(2).map(|two| (two[0], two[1])).collect();
-        placed(&marks, &lines, &self.frame.area)
-    }
-
-    fn zeros(&self) -> usize {
-        self.shown.iter().filter(|point| point.y == 0.0).count()
-    }
-
-    fn unnamed(&self) -> usize {
-        self.labels.iter().filter(|label| label.is_none()).count()
+impl<'a> TradeOff<'a> {
+    fn of(points: &'a [TradePoint], axes: [&'a str; 2], title: &str) -> Self {
+        let mut shown: Vec<&TradePoint> = points.iter().filter(|p| p.can_be_shown()).collect();
+        shown.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let [x_title, y_title] = axes;
+        Self {
+            frame: frame(&shown),
+            left_out: points.len() - shown.len(),
+            title: Title {
+                sample: shortened(title, LONGEST_SAMPLE),
+                details: format!("{y_title} against {x_title}"),
+                ..Title::default()
+            },
+            axes,
+            shown,
+        }
     }
 
     fn caption(&self) -> String {
@@ -153,44 +163,58 @@ impl Picture<'_> {
         )
     }
 
-    /// What the marks do not show.
+    /// Notes on what the marks do not show.
     fn notes(&self) -> Vec<String> {
-        let of = |count: usize, words: &str| {
-            (count > 0).then(|| format!("{} {words}", counted(count, "point")))
+        let zeros = self.shown.iter().filter(|point| point.y == 0.0).count();
+        let note = |count: usize, text: &str| {
+            (count > 0).then(|| format!("{} {text}", counted(count, "point")))
         };
         [
-            of(self.zeros(), "of zero at the lower edge"),
-            of(self.left_out, "not shown: no place on these axes"),
-            of(self.unnamed(), "without a name: no room"),
+            note(zeros, "of zero at the lower edge"),
+            note(self.left_out, "not shown: no place on these axes"),
         ]
         .into_iter()
         .flatten()
         .collect()
     }
 
+    fn svg(&self) -> String {
+        let key = NameKey::of(&self.shown);
+        render(key.height(), |canvas| {
+            self.title.draw(canvas);
+            self.draw(canvas);
+            self.legend().draw(canvas);
+            key.draw(canvas);
+        })
+    }
+
     fn draw(&self, canvas: &mut Canvas) {
         let [x_name, y_name] = self.axes;
         self.frame.draw(canvas, x_name, y_name);
-        self.frame.line(canvas, self.front().into_iter(), MAIN, 1.5);
-        for (point, label) in self.shown.iter().zip(&self.labels) {
-            if let Some(label) = label {
-                label.draw(canvas, &point.label, point.name_colour(), DOMINATED);
+        let front = self.front().into_iter();
+        self.frame.line(canvas, front, MAIN, 1.5);
+        let marks: Vec<Point> = self.shown.iter().map(|point| self.point(point)).collect();
+        let dominated = |i: &usize| self.shown[*i].colour() == DOMINATED;
+        let (behind, before): (Vec<usize>, Vec<usize>) = (0..marks.len()).partition(dominated);
+        for i in behind.into_iter().chain(before) {
+            draw_mark(canvas, marks[i], self.shown[i]);
+        }
+        let numbers = number_points(&marks, &self.frame.area);
+        for (i, &number) in numbers.iter().enumerate() {
+            let colour = self.shown[i].text_colour();
+            if number.1 < marks[i].1 - 2.0 * NUMBER {
+                let end = (number.0, number.1 + HALF_NUMBER.1);
+                canvas.line(&[marks[i], end], DOMINATED, 0.7);
             }
+            let text = (i + 1).to_string();
+            canvas.coloured_text(&text, number, NUMBER, Anchor::Middle, colour);
         }
-        let (rest, best): (Vec<_>, Vec<_>) =
-            self.shown.iter().partition(|p| p.colour() == DOMINATED);
-        for point in rest.into_iter().chain(best) {
-            self.mark(canvas, point);
-        }
-        self.legend().draw(canvas);
     }
 
-    fn mark(&self, canvas: &mut Canvas, point: &TradePoint) {
-        let at = place(&self.frame, point);
-        canvas.mark(at, MarkShape::Circle, point.colour());
-        if point.chosen {
-            canvas.line(&ring(at), EMPHASIS, 1.2);
-        }
+    /// The point of a choice; errors below the axis are at its lower edge.
+    fn point(&self, point: &TradePoint) -> Point {
+        let error = point.y.max(self.frame.y.low());
+        self.frame.point((point.x, error))
     }
 
     fn legend(&self) -> Legend {
@@ -206,21 +230,15 @@ impl Picture<'_> {
         legend
     }
 
-    /// The front as a step line, from the upper edge to the right one: with what a point costs its
-    /// error can be had, until the next one can be paid.
+    /// The front as a step line from the upper to the right edge: the lowest error at each cost.
     fn front(&self) -> Vec<(f64, f64)> {
         let (x, y) = (&self.frame.x, &self.frame.y);
-        let mut points: Vec<(f64, f64)> = self
-            .shown
-            .iter()
-            .filter(|p| p.pareto)
-            .map(|p| (p.x, p.y.max(y.low())))
-            .collect();
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let front = self.shown.iter().filter(|point| point.pareto);
         let mut line = Vec::new();
         let mut error = y.high();
-        for &(cost, lower) in &points {
-            line.extend([(cost, error), (cost, lower)]);
+        for point in front {
+            let lower = point.y.max(y.low());
+            line.extend([(point.x, error), (point.x, lower)]);
             error = lower;
         }
         line.extend(line.last().map(|&(_, error)| (x.high(), error)));
@@ -228,14 +246,102 @@ impl Picture<'_> {
     }
 }
 
+fn draw_mark(canvas: &mut Canvas, at: Point, point: &TradePoint) {
+    canvas.mark(at, MarkShape::Circle, point.colour());
+    if point.chosen {
+        canvas.line(&ring(at), EMPHASIS, 1.2);
+    }
+}
+
 /// A ring around a mark.
-fn ring((x, y): Place) -> Vec<Place> {
+fn ring((x, y): Point) -> Vec<Point> {
     const RADIUS: f64 = 6.5;
     let at = |i: u32| {
         let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
         (x + RADIUS * cos, y + RADIUS * sin)
     };
     (0..=24).map(at).collect()
+}
+
+/// The centres of the numbers of marks: each the first one of a few beside its mark, or else above
+/// it, that covers neither a mark nor another number.
+fn number_points(marks: &[Point], area: &Area) -> Vec<Point> {
+    let (half_width, half_height) = HALF_NUMBER;
+    let mut taken: Vec<Point> = Vec::new();
+    for &(x, y) in marks {
+        let is_free = |&(x, y): &Point| {
+            let off_marks = marks.iter().all(|mark| {
+                (mark.0 - x).abs() > half_width + HALF_MARK
+                    || (mark.1 - y).abs() > half_height + HALF_MARK
+            });
+            let off_numbers = taken.iter().all(|number| {
+                (number.0 - x).abs() > 2.0 * half_width || (number.1 - y).abs() > 2.0 * half_height
+            });
+            let inside = x - half_width > area.left
+                && x + half_width < area.right
+                && y - half_height > area.top
+                && y + half_height < area.bottom;
+            off_marks && off_numbers && inside
+        };
+        // Beside the mark, off the lines of the front that meet there.
+        let (dx, dy) = (half_width + HALF_MARK - 1.0, half_height + HALF_MARK + 1.0);
+        let beside = [(dx, -dy), (-dx, -dy), (-dx, dy), (dx, dy)];
+        let above = (1..=MOST_STACKED).map(|i| (0.0, -dy - 2.1 * half_height * f64::from(i)));
+        let mut candidates = beside
+            .into_iter()
+            .chain(above)
+            .map(|(dx, dy)| (x + dx, y + dy));
+        let free = candidates.find(is_free);
+        taken.push(free.unwrap_or((x + dx, y - dy)));
+    }
+    taken
+}
+
+/// The names of the numbered choices, in columns below the axes.
+struct NameKey<'a> {
+    entries: Vec<(String, &'a TradePoint)>,
+    column_width: f64,
+    rows: usize,
+}
+
+impl<'a> NameKey<'a> {
+    fn of(points: &[&'a TradePoint]) -> Self {
+        let entry = |&point: &&'a TradePoint| (shortened(&point.label, LONGEST_NAME), point);
+        let entries: Vec<(String, &TradePoint)> = points.iter().map(entry).collect();
+        let letters = entries.iter().map(|(name, _)| name.chars().count());
+        let name_width = LETTER * TEXT * letters.max().unwrap_or(0) as f64;
+        let column_width = NAME_INDENT + name_width + COLUMN_GAP;
+        let width = f64::from(SIZE.0) - 2.0 * LEFT;
+        let mut columns = 1;
+        while (columns + 1) as f64 * column_width <= width && columns < MOST_COLUMNS {
+            columns += 1;
+        }
+        Self {
+            rows: entries.len().div_ceil(columns),
+            column_width: width / columns as f64,
+            entries,
+        }
+    }
+
+    /// Its height in units of the figure; half a line more keeps the last line off the edge.
+    fn height(&self) -> u32 {
+        let rows = u32::try_from(self.rows).unwrap_or(0);
+        if rows > 0 { 18 * rows + 9 } else { 0 }
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        for (i, (name, point)) in self.entries.iter().enumerate() {
+            let (column, row) = (i / self.rows, i % self.rows);
+            let x = LEFT + self.column_width * column as f64;
+            let y = f64::from(SIZE.1) + KEY_SPACING * (row as f64 + 0.5);
+            let colour = point.text_colour();
+            let number = (x + NAME_INDENT - 8.0, y);
+            let text = (i + 1).to_string();
+            canvas.coloured_text(&text, number, TEXT - 1.0, Anchor::End, colour);
+            let name_point = (x + NAME_INDENT, y);
+            canvas.coloured_text(name, name_point, TEXT - 1.0, Anchor::Start, colour);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -261,7 +367,7 @@ mod tests {
     }
 
     #[test]
-    fn every_point_is_named_and_zero_is_said_to_be_at_the_edge() {
+    fn every_point_is_named_and_an_error_of_zero_is_noted() {
         let figure = picture(&[
             point("fast", 1.0, 1e-3, true),
             point("chosen", 10.0, 0.0, true),
@@ -279,7 +385,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_place_is_counted() {
+    fn points_that_cannot_be_shown_are_counted() {
         let figure = picture(&[
             point("free", 0.0, 1.0, false),
             point("endless", f64::INFINITY, 1.0, false),
@@ -292,7 +398,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_zeros_alone_have_a_picture() {
+    fn a_figure_without_points_or_of_zeros_only_is_drawn() {
         picture(&[]);
         picture(&[point("exact", 1.0, 0.0, true)]);
         picture(&[point("least", f64::MIN_POSITIVE, f64::MIN_POSITIVE, true)]);
@@ -300,27 +406,14 @@ mod tests {
     }
 
     #[test]
-    fn the_front_goes_down_in_steps() {
+    fn the_front_descends_in_steps() {
         let points = [
             point("b", 10.0, 0.1, true),
             point("a", 1.0, 1.0, true),
             point("c", 5.0, 0.5, false),
         ];
-        let shown: Vec<&TradePoint> = points.iter().collect();
-        let picture = Picture {
-            frame: frame(&shown),
-            shown,
-            left_out: 0,
-            labels: Vec::new(),
-            title: Title {
-                sample: String::new(),
-                details: String::new(),
-                theory: String::new(),
-                samples: Vec::new(),
-            },
-            axes: ["", ""],
-        };
-        let (x, y) = (&picture.frame.x, &picture.frame.y);
+        let trade_off = TradeOff::of(&points, ["", ""], "");
+        let (x, y) = (&trade_off.frame.x, &trade_off.frame.y);
         let expected = [
             (1.0, y.high()),
             (1.0, 1.0),
@@ -328,6 +421,46 @@ mod tests {
             (10.0, 0.1),
             (x.high(), 0.1),
         ];
-        assert_eq!(picture.front(), expected);
+        assert_eq!(trade_off.front(), expected);
+    }
+
+    #[test]
+    fn numbers_of_a_crowd_cover_neither_a_mark_nor_each_other() {
+        let marks: Vec<Point> = (0..20)
+            .map(|i| (300.0 + 9.0 * f64::from(i), 500.0))
+            .collect();
+        let numbers = number_points(&marks, &WHOLE);
+        let covers = |(x, y): Point, half: Point, (u, v): Point| {
+            (x - u).abs() < half.0 && (y - v).abs() < half.1
+        };
+        for (i, &number) in numbers.iter().enumerate() {
+            assert!(!marks.iter().any(|&mark| covers(number, HALF_NUMBER, mark)));
+            let both = (2.0 * HALF_NUMBER.0, 2.0 * HALF_NUMBER.1);
+            assert!(
+                !numbers[..i]
+                    .iter()
+                    .any(|&other| covers(number, both, other))
+            );
+        }
+    }
+
+    #[test]
+    fn the_key_has_a_number_and_a_name_for_each_choice() {
+        let points: Vec<TradePoint> = (0..25)
+            .map(|i| {
+                point(
+                    &format!("choice of cost {i}"),
+                    1.0 + f64::from(i),
+                    0.1,
+                    false,
+                )
+            })
+            .collect();
+        let figure = trade_picture(&points, "cost", "error", "").unwrap();
+        for i in 0..25 {
+            let entry = format!(">\n{}\n</text>\n<text", i + 1);
+            assert!(figure.svg.contains(&entry), "{i}");
+            assert!(figure.svg.contains(&format!("\nchoice of cost {i}\n")));
+        }
     }
 }

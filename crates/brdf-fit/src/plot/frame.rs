@@ -29,6 +29,14 @@ pub(super) const WHOLE: Area = Area {
 };
 
 impl Area {
+    /// Whether a rectangle lies inside, by its centre, half its width and half its height.
+    pub(super) fn contains(&self, (x, y): Point, (width, height): (f64, f64)) -> bool {
+        x - width > self.left
+            && x + width < self.right
+            && y - height > self.top
+            && y + height < self.bottom
+    }
+
     fn centre(&self) -> Point {
         (
             0.5 * (self.left + self.right),

@@ -59,7 +59,7 @@ impl Legend {
         }
     }
 
-    /// Adds the curves sample by sample. Where there are too many, a note tells how many evenly
+    /// Adds the curves sample by sample. Where there are too many, a note states how many evenly
     /// spaced ones have an entry.
     pub(super) fn add_curves(&mut self, curves: &[Styled], measured: bool) {
         let of_same_sample = |a: &Styled, b: &Styled| a.sample == b.sample;

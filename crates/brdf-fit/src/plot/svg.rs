@@ -73,7 +73,7 @@ pub(super) struct Document {
 }
 
 impl Document {
-    /// A white page of `width` x `height` pixels, each of which `subdivisions` coordinates long.
+    /// A white page of `width` x `height` pixels, each of which is `subdivisions` coordinates long.
     pub(super) fn new((width, height): (u32, u32), subdivisions: u32) -> Self {
         let (right, bottom) = (width * subdivisions, height * subdivisions);
         Self {

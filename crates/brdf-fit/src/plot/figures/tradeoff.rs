@@ -9,8 +9,8 @@ use crate::plot::figure::Figure;
 use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::legend::{Key, Legend};
 use crate::plot::palette::{MarkShape, Rgb};
-use crate::plot::style::{EMPHASIS, INK, MAIN, SIZE, TEXT};
-use crate::plot::svg::Anchor;
+use crate::plot::style::{EMPHASIS, INK, MAIN, SIZE, TEXT, WHITE};
+use crate::plot::svg::{Anchor, Paint};
 use crate::plot::text::shortened;
 use crate::plot::title::{LEFT, LONGEST_SAMPLE, Title};
 use crate::words::counted;
@@ -61,7 +61,8 @@ pub struct TradePoint {
     pub x: f64,
     /// Its error; zero is shown at the lower edge.
     pub y: f64,
-    /// Whether it is on the Pareto front: no other choice has a lower cost and a lower error.
+    /// Whether it is on the Pareto front: no other choice is better in cost or error without being
+    /// worse in the other.
     pub pareto: bool,
     /// Whether it is the choice that was made.
     pub chosen: bool,
@@ -156,8 +157,8 @@ impl<'a> TradeOff<'a> {
         let notes = self.notes().into_iter();
         let notes = notes.map(|note| format!(" {note}."));
         format!(
-            "{}. The line is the Pareto front: no other choice costs \
-             and errs less.{}",
+            "{}. The line is the Pareto front: no other choice has both a lower cost and a lower \
+             error.{}",
             self.title.details,
             notes.collect::<String>()
         )
@@ -170,8 +171,8 @@ impl<'a> TradeOff<'a> {
             (count > 0).then(|| format!("{} {text}", counted(count, "point")))
         };
         [
-            note(zeros, "of zero at the lower edge"),
-            note(self.left_out, "not shown: no place on these axes"),
+            note(zeros, "of zero error at the lower edge"),
+            note(self.left_out, "not shown: outside logarithmic axes"),
         ]
         .into_iter()
         .flatten()
@@ -194,20 +195,20 @@ impl<'a> TradeOff<'a> {
         let front = self.front().into_iter();
         self.frame.line(canvas, front, MAIN, 1.5);
         let marks: Vec<Point> = self.shown.iter().map(|point| self.point(point)).collect();
+        let numbers = number_points(&marks, &self.frame.area);
+        for (&mark, &number) in marks.iter().zip(&numbers) {
+            // A number beside its mark needs no leader.
+            if number.0 == mark.0 {
+                canvas.line(&[mark, number], DOMINATED, 0.7);
+            }
+        }
         let dominated = |i: &usize| self.shown[*i].colour() == DOMINATED;
         let (behind, before): (Vec<usize>, Vec<usize>) = (0..marks.len()).partition(dominated);
         for i in behind.into_iter().chain(before) {
             draw_mark(canvas, marks[i], self.shown[i]);
         }
-        let numbers = number_points(&marks, &self.frame.area);
         for (i, &number) in numbers.iter().enumerate() {
-            let colour = self.shown[i].text_colour();
-            if number.1 < marks[i].1 - 2.0 * NUMBER {
-                let end = (number.0, number.1 + HALF_NUMBER.1);
-                canvas.line(&[marks[i], end], DOMINATED, 0.7);
-            }
-            let text = (i + 1).to_string();
-            canvas.coloured_text(&text, number, NUMBER, Anchor::Middle, colour);
+            draw_number(canvas, i + 1, number, self.shown[i].text_colour());
         }
     }
 
@@ -253,6 +254,15 @@ fn draw_mark(canvas: &mut Canvas, at: Point, point: &TradePoint) {
     }
 }
 
+/// A number on a light ground, through which lines behind it are faint.
+fn draw_number(canvas: &mut Canvas, number: usize, (x, y): Point, colour: Rgb) {
+    let (width, height) = HALF_NUMBER;
+    let (left, right, top, bottom) = (x - width, x + width, y - height, y + height);
+    let corners = [(left, top), (right, top), (right, bottom), (left, bottom)];
+    canvas.area(&corners, Paint::translucent(WHITE, 0.8));
+    canvas.coloured_text(&number.to_string(), (x, y), NUMBER, Anchor::Middle, colour);
+}
+
 /// A ring around a mark.
 fn ring((x, y): Point) -> Vec<Point> {
     const RADIUS: f64 = 6.5;
@@ -263,38 +273,37 @@ fn ring((x, y): Point) -> Vec<Point> {
     (0..=24).map(at).collect()
 }
 
-/// The centres of the numbers of marks: each the first one of a few beside its mark, or else above
-/// it, that covers neither a mark nor another number.
+/// The centres of the numbers of marks. Each is at the first free position of a few beside its mark
+/// and further ones above it: within the area, off all marks and off the numbers before it.
 fn number_points(marks: &[Point], area: &Area) -> Vec<Point> {
-    let (half_width, half_height) = HALF_NUMBER;
-    let mut taken: Vec<Point> = Vec::new();
+    let mut numbers: Vec<Point> = Vec::new();
     for &(x, y) in marks {
-        let is_free = |&(x, y): &Point| {
-            let off_marks = marks.iter().all(|mark| {
-                (mark.0 - x).abs() > half_width + HALF_MARK
-                    || (mark.1 - y).abs() > half_height + HALF_MARK
-            });
-            let off_numbers = taken.iter().all(|number| {
-                (number.0 - x).abs() > 2.0 * half_width || (number.1 - y).abs() > 2.0 * half_height
-            });
-            let inside = x - half_width > area.left
-                && x + half_width < area.right
-                && y - half_height > area.top
-                && y + half_height < area.bottom;
-            off_marks && off_numbers && inside
+        let is_free = |&number: &Point| {
+            let covers = |points: &[Point], half: Point| {
+                let distance = (HALF_NUMBER.0 + half.0, HALF_NUMBER.1 + half.1);
+                points
+                    .iter()
+                    .any(|&point| is_within(point, number, distance))
+            };
+            area.contains(number, HALF_NUMBER)
+                && !covers(marks, (HALF_MARK, HALF_MARK))
+                && !covers(&numbers, HALF_NUMBER)
         };
-        // Beside the mark, off the lines of the front that meet there.
-        let (dx, dy) = (half_width + HALF_MARK - 1.0, half_height + HALF_MARK + 1.0);
+        // Diagonally beside the mark, because the lines of the front are horizontal and vertical.
+        let (dx, dy) = (HALF_NUMBER.0 + 2.0, HALF_NUMBER.1 + 4.0);
         let beside = [(dx, -dy), (-dx, -dy), (-dx, dy), (dx, dy)];
-        let above = (1..=MOST_STACKED).map(|i| (0.0, -dy - 2.1 * half_height * f64::from(i)));
-        let mut candidates = beside
-            .into_iter()
-            .chain(above)
-            .map(|(dx, dy)| (x + dx, y + dy));
-        let free = candidates.find(is_free);
-        taken.push(free.unwrap_or((x + dx, y - dy)));
+        let above = (1..=MOST_STACKED).map(|i| (0.0, -dy - NUMBER * f64::from(i)));
+        let candidates = beside.into_iter().chain(above);
+        let mut candidates = candidates.map(|(dx, dy)| (x + dx, y + dy));
+        let number = candidates.find(is_free).unwrap_or((x + dx, y - dy));
+        numbers.push(number);
     }
-    taken
+    numbers
+}
+
+/// Whether two points are less than a distance apart, both horizontally and vertically.
+fn is_within(a: Point, b: Point, distance: Point) -> bool {
+    (a.0 - b.0).abs() < distance.0 && (a.1 - b.1).abs() < distance.1
 }
 
 /// The names of the numbered choices, in columns below the axes.
@@ -379,7 +388,7 @@ mod tests {
         assert!(
             figure
                 .caption
-                .contains("1 point of zero at the lower edge.")
+                .contains("1 point of zero error at the lower edge.")
         );
         assert!(!figure.caption.contains("not shown"));
     }
@@ -392,7 +401,7 @@ mod tests {
             point("unknown", 1.0, f64::NAN, false),
             point("here", 1.0, 1.0, true),
         ]);
-        let words = "3 points not shown: no place on these axes.";
+        let words = "3 points not shown: outside logarithmic axes.";
         assert!(figure.caption.contains(words), "{}", figure.caption);
         assert!(!figure.svg.contains("endless"));
     }
@@ -430,16 +439,17 @@ mod tests {
             .map(|i| (300.0 + 9.0 * f64::from(i), 500.0))
             .collect();
         let numbers = number_points(&marks, &WHOLE);
-        let covers = |(x, y): Point, half: Point, (u, v): Point| {
-            (x - u).abs() < half.0 && (y - v).abs() < half.1
-        };
         for (i, &number) in numbers.iter().enumerate() {
-            assert!(!marks.iter().any(|&mark| covers(number, HALF_NUMBER, mark)));
+            assert!(
+                !marks
+                    .iter()
+                    .any(|&mark| is_within(number, mark, HALF_NUMBER))
+            );
             let both = (2.0 * HALF_NUMBER.0, 2.0 * HALF_NUMBER.1);
             assert!(
                 !numbers[..i]
                     .iter()
-                    .any(|&other| covers(number, both, other))
+                    .any(|&other| is_within(number, other, both))
             );
         }
     }

@@ -171,7 +171,7 @@ impl<'a> TradeOff<'a> {
             (count > 0).then(|| format!("{} {text}", counted(count, "point")))
         };
         [
-            note(zeros, "of zero error at the lower edge"),
+            note(zeros, "with an error of zero at the lower edge"),
             note(self.left_out, "not shown: outside logarithmic axes"),
         ]
         .into_iter()
@@ -388,7 +388,7 @@ mod tests {
         assert!(
             figure
                 .caption
-                .contains("1 point of zero error at the lower edge.")
+                .contains("1 point with an error of zero at the lower edge.")
         );
         assert!(!figure.caption.contains("not shown"));
     }

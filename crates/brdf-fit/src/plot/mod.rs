@@ -1,5 +1,6 @@
-//! The pictures of a fit: theory against experiment, residuals, the polar form of the paper, the
-//! profile of E over k1 and the reflectance; and the paper's own figures from its Table 1.
+//! Figures of a fit as SVG and PNG: theory against experiment, residuals, the polar form of the
+//! paper, the profile of E over k1 and the reflectance; the paper's own figures from its Table 1; and
+//! cost against error of a trade-off.
 //!
 //! ```no_run
 //! use std::path::Path;
@@ -19,387 +20,37 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The data flow one way: a `view` says how data are looked at, a `selection` which readings are
-//! shown, `curves` what of the theory stands beside them, for a screen as for a figure; a figure's
-//! file draws it in a `frame` on a `canvas`, `raster` makes a PNG of the SVG.
+//! The data flow in one direction. [`View`] determines how the data are plotted, [`Selection`] which
+//! readings are shown, and [`curves()`] adds the theory; screens and figures share these three. Each
+//! figure has a file below `figures`, which draws within the axes of a `frame` on a `canvas`, the
+//! `svg` writer produces the document, and `png` converts it.
 
-mod arrangement;
 mod axis;
 mod canvas;
 mod clip;
 mod curves;
+mod error;
+mod figure;
+mod figures;
 mod frame;
-mod labels;
+mod legend;
 mod palette;
-mod paper;
-mod polar;
-mod profile;
-mod raster;
-mod reflectance;
-mod residuals;
+mod png;
 mod selection;
 mod style;
-mod theory;
+mod styled;
+mod svg;
+mod text;
+pub mod ticks;
 mod title;
-mod trade;
 mod view;
 mod write;
 
-use std::io;
-use std::path::PathBuf;
-
-use brdf_core::{AnyBrdf, Geometry, GeometryError, ParameterError};
-
-use crate::fit::Fit;
-use crate::output::WriteError;
-use crate::scan::Measurements;
-use curves::{Curves, Source};
-use title::Title;
-
-pub use arrangement::{Layer, figure_of};
 pub use curves::{Curve, Reading, Theory, curves, theory_curves, value_range};
+pub use error::PlotError;
+pub use figure::Figure;
+pub use figures::{Layer, TradePoint, figure_of, figures, paper_figures, trade_picture};
 pub use palette::{FAMILIES, Ground, MarkShape, colour, family_colour, mark};
-pub use paper::paper_figures;
 pub use selection::{Selection, Trace};
-pub use trade::{TradePoint, trade_picture};
 pub use view::{Layout, Quantity, Scale, View};
 pub use write::write_figures;
-
-/// A figure, ready to be written or shown.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Figure {
-    /// Stem of its file name, such as "theory-linear".
-    pub name: String,
-    /// What it shows, and what of the data it does not show.
-    pub caption: String,
-    /// The drawing. Its text is in the reader's own sans-serif typeface.
-    pub svg: String,
-}
-
-impl Figure {
-    /// The figure as PNG on white, `scale` pixels for each unit of the SVG: 1.0 for a screen, 2.0
-    /// for print. Its text is in a typeface of its own: a PNG is the same on every machine.
-    pub fn png(&self, scale: f32) -> Result<Vec<u8>, PlotError> {
-        raster::png(&self.svg, scale)
-    }
-}
-
-/// Why a figure cannot be drawn or written.
-#[derive(Debug, thiserror::Error)]
-pub enum PlotError {
-    /// The parameters of the fit are outside the model's domain.
-    #[error(transparent)]
-    Parameters(#[from] ParameterError),
-    /// An angle is outside the model's domain.
-    #[error(transparent)]
-    Geometry(#[from] GeometryError),
-    /// The drawing failed.
-    #[error("the figure cannot be drawn: {0}")]
-    Draw(String),
-    /// The SVG cannot be read back for the PNG.
-    #[error("the SVG of the figure cannot be read: {0}")]
-    Svg(#[from] resvg::usvg::Error),
-    /// The scale gives an image of no pixels, or of too many.
-    #[error("scale {0}: expected one that gives an image of 1 to {max} pixels a side", max = raster::LARGEST_SIDE)]
-    Scale(f32),
-    /// The image cannot be encoded.
-    #[error("the PNG cannot be encoded: {0}")]
-    Png(String),
-    /// The folder cannot be made.
-    #[error("{}: cannot be made a folder for the pictures: {error}", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// What the system says.
-        error: io::Error,
-    },
-    /// A file cannot be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
-
-/// The standard error of the theory in 1/sr at a geometry.
-type Sigma<'a> = Option<&'a dyn Fn(&Geometry) -> f64>;
-
-/// The figures of a fit of one wavelength:
-///
-/// - `theory-linear` and `theory-log`: readings and theory over the signed view angle;
-/// - `residuals`: measured less theory;
-/// - `polar`: f_r as radius at the view angle;
-/// - `profile-k1`: the lowest E over k1;
-/// - `reflectance`: hemispherical reflectance over the incidence angle.
-///
-/// `sigma` gives the standard error of the theory in 1/sr at a geometry, which is drawn as a band
-/// of one standard error to both sides; where it is not a positive number there is no band.
-///
-/// The first four show the readings in the plane of incidence, of up to 8 incidences; the caption
-/// says what is left out. Where no reading is in the plane they are left out altogether, the
-/// logarithmic one also where nothing is positive. The profile is left out where the fit has none,
-/// or no specular part.
-pub fn figures(
-    measurements: &Measurements,
-    fit: &Fit,
-    sigma: Option<&dyn Fn(&Geometry) -> f64>,
-) -> Result<Vec<Figure>, PlotError> {
-    let brdf = AnyBrdf::new(fit.model().family(), &fit.at())?;
-    let title = Title::of(measurements, fit);
-    let source = Source {
-        name: None,
-        measurements,
-        brdf: &brdf,
-        sigma,
-        incidences: None,
-        family: None,
-    };
-    let curves = Curves::of(&[source], &View::default());
-    let mut figures = Vec::new();
-    if !curves.all.is_empty() {
-        figures.push(theory::linear(&title, &curves)?);
-        figures.extend(theory::logarithmic(&title, &curves)?);
-        figures.push(residuals::figure(&title, &curves)?);
-        figures.push(polar::figure(&title, &curves)?);
-    }
-    figures.extend(profile::figure(&title, fit)?);
-    figures.push(reflectance::figure(&title, &brdf, fit)?);
-    Ok(figures)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f64::consts::{FRAC_PI_2, PI};
-
-    use brdf_core::Parameters;
-    use resvg::tiny_skia::Pixmap;
-    use resvg::usvg::{Options, Tree};
-
-    use super::*;
-    use crate::fit::{FitOptions, fit};
-    use crate::model::Model;
-    use crate::scan::Measurement;
-    use crate::scan::synthetic::scan;
-    use crate::{Measurements, RefractiveIndex};
-
-    fn lacquer() -> Measurements {
-        scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5)
-    }
-
-    fn fitted(measurements: &Measurements, model: Model) -> Fit {
-        let options = FitOptions {
-            model,
-            refractive_index: Some(RefractiveIndex::Same(1.5)),
-            ..FitOptions::default()
-        };
-        fit(measurements, &options).unwrap()
-    }
-
-    fn reading(psi_deg: f64, theta_deg: f64, brdf: f64) -> Measurement {
-        Measurement {
-            wavelength_um: None,
-            psi: psi_deg.to_radians(),
-            theta: theta_deg.to_radians(),
-            phi: 0.0,
-            brdf,
-            sigma: None,
-        }
-    }
-
-    /// The figures of readings with the fit of another scan: figures do not ask where it is from.
-    fn figures_of(readings: Vec<Measurement>) -> Vec<Figure> {
-        let fit = fitted(&lacquer(), Model::Three);
-        let measurements = Measurements::new("test", readings).unwrap();
-        let figures = figures(&measurements, &fit, None).unwrap();
-        check(&figures);
-        figures
-    }
-
-    fn names(figures: &[Figure]) -> Vec<&str> {
-        figures.iter().map(|figure| figure.name.as_str()).collect()
-    }
-
-    /// Every figure is valid XML of the size it should have, and without what is not a number.
-    fn check(figures: &[Figure]) {
-        for figure in figures {
-            let tree = Tree::from_str(&figure.svg, &Options::default()).unwrap();
-            assert_eq!((tree.size().width(), tree.size().height()), (960.0, 580.0));
-            assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf<"));
-            assert!(!figure.caption.is_empty());
-        }
-    }
-
-    const ALL: [&str; 6] = [
-        "theory-linear",
-        "theory-log",
-        "residuals",
-        "polar",
-        "profile-k1",
-        "reflectance",
-    ];
-
-    #[test]
-    fn a_fit_has_all_figures_with_every_model() {
-        for model in Model::ALL {
-            let fit = fitted(&lacquer(), model);
-            let figures = figures(&lacquer(), &fit, None).unwrap();
-            check(&figures);
-            if model == Model::Lambert {
-                assert!(!names(&figures).contains(&"profile-k1"));
-            } else {
-                assert_eq!(names(&figures), ALL, "{model}");
-            }
-        }
-    }
-
-    #[test]
-    fn bands_and_error_bars_are_drawn_and_said() {
-        let fit = fitted(&lacquer(), Model::Three);
-        let mut measurements = lacquer();
-        for reading in &mut measurements.readings {
-            reading.sigma = Some(0.1 * reading.brdf);
-        }
-        let plain = figures(&measurements, &fit, None).unwrap();
-        // A tenth of the theory, and nothing usable close to grazing.
-        let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).unwrap();
-        let sigma = |at: &Geometry| match at.cos_theta() {
-            cos if cos < 0.1 => f64::NAN,
-            _ => 0.1 * brdf.value(at),
-        };
-        let banded = figures(&measurements, &fit, Some(&sigma)).unwrap();
-        check(&banded);
-        assert!(banded[0].caption.contains("standard error"));
-        assert!(banded[0].caption.contains("standard deviation"));
-        assert!(!plain[0].caption.contains("standard error"));
-        assert!(
-            banded[0].svg.matches("<polygon").count() > plain[0].svg.matches("<polygon").count()
-        );
-    }
-
-    #[test]
-    fn few_and_odd_readings_have_figures() {
-        assert_eq!(names(&figures_of(vec![reading(30.0, -30.0, 0.2)])), ALL);
-        let zeros = figures_of(
-            (0..9)
-                .map(|i| reading(30.0, 10.0 * f64::from(i), 0.0))
-                .collect(),
-        );
-        assert!(zeros[1].caption.contains("9 readings <= 0 not shown"));
-        let negative = figures_of(vec![reading(10.0, 5.0, -0.1), reading(10.0, 9.0, 0.2)]);
-        assert!(negative[1].caption.contains("1 reading <= 0 not shown"));
-        assert!(negative[3].caption.contains("1 reading < 0 not shown"));
-        let small = figures_of(vec![reading(10.0, 5.0, 1e-30), reading(10.0, 9.0, 0.2)]);
-        assert!(
-            small[1]
-                .caption
-                .contains("1 reading below the axis not shown")
-        );
-        figures_of(vec![
-            reading(0.0, 0.0, f64::MAX),
-            reading(0.0, 5.0, f64::MIN),
-        ]);
-        let mut grazing = reading(0.0, 0.0, 1.0);
-        (grazing.psi, grazing.theta) = (FRAC_PI_2, -FRAC_PI_2);
-        figures_of(vec![grazing]);
-    }
-
-    #[test]
-    fn nothing_positive_has_no_logarithmic_figure() {
-        let mut fit = fitted(&lacquer(), Model::Lambert);
-        fit.parameters.kd = 0.0;
-        let measurements = Measurements::new("test", vec![reading(10.0, 5.0, 0.0)]).unwrap();
-        let figures = figures(&measurements, &fit, None).unwrap();
-        check(&figures);
-        assert_eq!(
-            names(&figures),
-            ["theory-linear", "residuals", "polar", "reflectance"]
-        );
-    }
-
-    #[test]
-    fn readings_out_of_the_plane_are_counted_and_not_drawn() {
-        let mut out = reading(30.0, 40.0, 0.1);
-        out.phi = 1.0;
-        let mut forward = reading(30.0, 40.0, 0.1);
-        forward.phi = PI;
-        let figures = figures_of(vec![out, out, forward]);
-        assert!(
-            figures[0]
-                .caption
-                .contains("2 readings out of the plane of incidence are not")
-        );
-        assert_eq!(names(&figures_of(vec![out])), ["profile-k1", "reflectance"]);
-        assert_eq!(names(&figures_of(vec![])), ["profile-k1", "reflectance"]);
-    }
-
-    #[test]
-    fn of_many_incidences_a_few_are_shown() {
-        let readings = (0..90).flat_map(|psi| {
-            (-80..=80)
-                .step_by(20)
-                .map(move |theta| reading(f64::from(psi), f64::from(theta), 0.1))
-        });
-        let figures = figures_of(readings.collect());
-        assert!(figures[0].caption.contains("8 of 90 incidences are shown"));
-        assert!(figures[0].svg.contains("psi = 89 deg"));
-    }
-
-    #[test]
-    fn readings_without_end_do_not_swell_the_figure() {
-        let many = (0..200_000).map(|i| reading(10.0, 8e-4 * f64::from(i) - 80.0, 0.1));
-        let figures = figures_of(many.collect());
-        assert!(figures[0].svg.len() < 1_000_000);
-        assert!(figures[0].caption.contains("readings are drawn"));
-    }
-
-    #[test]
-    fn parameters_outside_the_domain_are_an_error() {
-        let mut fit = fitted(&lacquer(), Model::Three);
-        fit.parameters.k1 = f64::NAN;
-        assert!(matches!(
-            figures(&lacquer(), &fit, None),
-            Err(PlotError::Parameters(_))
-        ));
-    }
-
-    #[test]
-    fn figures_are_written_as_svg_and_as_png_of_twice_the_size() {
-        let folder = tempfile::tempdir().unwrap();
-        let inner = folder.path().join("new");
-        let fit = fitted(&lacquer(), Model::Three);
-        let mut measurements = lacquer();
-        let name = ("sample".to_owned(), "<&\">".to_owned());
-        measurements.metadata.0.push(name);
-        let figures = figures(&measurements, &fit, None).unwrap();
-        check(&figures);
-        let files = write_figures(&figures[..1], &inner, "a").unwrap();
-        assert_eq!(
-            files,
-            [
-                inner.join("a-theory-linear.svg"),
-                inner.join("a-theory-linear.png")
-            ]
-        );
-        let image = Pixmap::decode_png(&std::fs::read(&files[1]).unwrap()).unwrap();
-        assert_eq!((image.width(), image.height()), (1920, 1160));
-        // White ground, and letters: some pixels in the title's line are not white.
-        let title = image.pixels().iter().take(1920 * 60);
-        assert!(title.filter(|pixel| pixel.red() < 128).count() > 50);
-    }
-
-    #[test]
-    fn what_cannot_be_written_is_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("file");
-        std::fs::write(&file, "").unwrap();
-        let message = write_figures(&[], &file.join("sub"), "a")
-            .unwrap_err()
-            .to_string();
-        assert!(message.contains("cannot be made a folder"), "{message}");
-    }
-
-    #[test]
-    fn a_scale_without_pixels_is_an_error() {
-        let figure = &paper_figures().unwrap()[0];
-        for scale in [0.0, -1.0, 1e9, f32::NAN, f32::INFINITY] {
-            assert!(matches!(figure.png(scale), Err(PlotError::Scale(_))));
-        }
-    }
-}

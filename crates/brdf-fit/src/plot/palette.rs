@@ -1,13 +1,13 @@
-//! Colours and marks of the incidences, for print and for screens, which colour-blind readers tell
-//! apart.
+//! Colours and marks of the incidences for print and for screens, which colour-blind readers can
+//! distinguish.
 
-/// Up to so many incidences of the only sample have colours of their own.
+/// Up to this number of incidences of a single sample have distinct colours.
 pub(super) const FEW_CURVES: usize = FEW.len();
 
-/// So many samples have colours of their own.
+/// The number of families of colours: up to this number of samples have distinct ones.
 pub const FAMILIES: usize = 6;
 
-/// What colours are seen on.
+/// The background of the colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ground {
     /// Paper, or a light window.
@@ -16,7 +16,7 @@ pub enum Ground {
     Dark,
 }
 
-/// The shape of a reading's mark: a second feature beside the colour.
+/// The shape of a reading's mark, which distinguishes samples and incidences beside the colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarkShape {
     /// A filled circle.
@@ -27,13 +27,13 @@ pub enum MarkShape {
     Diamond,
     /// A filled triangle.
     Triangle,
-    /// A filled triangle on its point.
+    /// A filled triangle with its apex below.
     Inverted,
     /// A filled cross.
     Cross,
 }
 
-/// The marks, one for each family.
+/// The marks, one for each family of colours.
 const MARKS: [MarkShape; FAMILIES] = [
     MarkShape::Circle,
     MarkShape::Square,
@@ -43,13 +43,14 @@ const MARKS: [MarkShape; FAMILIES] = [
     MarkShape::Cross,
 ];
 
-type Colour = [u8; 3];
+/// Red, green and blue.
+pub(super) type Rgb = [u8; 3];
 
-type Ramp = [Colour; 5];
+type Ramp = [Rgb; 5];
 
-/// Okabe and Ito's colours, which colour-blind readers tell apart; grey instead of their yellow,
-/// which is hardly seen on white.
-const FEW: [Colour; 8] = [
+/// Okabe and Ito's colours, which colour-blind readers can distinguish, with grey instead of their
+/// yellow, which is hardly visible on white.
+const FEW: [Rgb; 8] = [
     [0, 114, 178],
     [213, 94, 0],
     [0, 158, 115],
@@ -60,8 +61,8 @@ const FEW: [Colour; 8] = [
     [140, 140, 140],
 ];
 
-/// The same on a dark ground: blue is lighter there, and white stands for black.
-const FEW_ON_DARK: [Colour; 8] = [
+/// The same on a dark ground, with a lighter blue and with white instead of black.
+const FEW_ON_DARK: [Rgb; 8] = [
     [60, 150, 220],
     [240, 120, 40],
     [0, 175, 130],
@@ -72,8 +73,8 @@ const FEW_ON_DARK: [Colour; 8] = [
     [150, 150, 150],
 ];
 
-/// A ramp from dark to light, its lightness in equal steps, for more incidences of the only sample
-/// than there are single colours.
+/// A ramp from dark to light in equal steps of lightness, for more incidences of a single sample than
+/// there are distinct colours.
 const MANY: Ramp = [
     [40, 20, 90],
     [55, 90, 140],
@@ -82,8 +83,8 @@ const MANY: Ramp = [
     [215, 215, 45],
 ];
 
-/// The same for several samples, a ramp each. The middles of any two differ by 14 or more in CIE
-/// L*a*b* for every eye; the ends cannot, so that the marks differ as well.
+/// A ramp for each of several samples. The middles of any two differ by 14 or more in CIE L*a*b*, with
+/// normal and with colour-blind vision; the ends cannot, so that the marks differ as well.
 const RAMPS: [Ramp; FAMILIES] = [
     // Green.
     [
@@ -135,12 +136,13 @@ const RAMPS: [Ramp; FAMILIES] = [
     ],
 ];
 
-/// The colour of incidence `i` of `count`, ascending, of the only sample (`None`), or of one of
-/// several in this family of colours; after [`FAMILIES`] samples they begin again.
+/// The colour (red, green and blue) of incidence `i` of `count` in ascending order: of a single sample
+/// with `family` `None`, or of one of several samples in a family of colours. The families repeat
+/// after [`FAMILIES`].
 ///
-/// Up to 8 incidences of the only sample have colours of their own, others a ramp from dark to
-/// light, of which each ground shows the part that is seen on it.
-pub fn colour(family: Option<usize>, i: usize, count: usize, ground: Ground) -> Colour {
+/// Up to 8 incidences of a single sample have distinct colours. Further ones, and those of several
+/// samples, have colours of a ramp from dark to light, of which each ground uses the visible part.
+pub fn colour(family: Option<usize>, i: usize, count: usize, ground: Ground) -> Rgb {
     let few = match ground {
         Ground::Light => &FEW,
         Ground::Dark => &FEW_ON_DARK,
@@ -153,36 +155,37 @@ pub fn colour(family: Option<usize>, i: usize, count: usize, ground: Ground) -> 
     on_ramp(ramp, i as f64 / (count.max(2) - 1) as f64, ground)
 }
 
-/// The colour that a sample is known by, beside others: the middle of its family.
-pub fn family_colour(family: usize, ground: Ground) -> Colour {
+/// The colour that represents a sample among several: the middle of its family.
+pub fn family_colour(family: usize, ground: Ground) -> Rgb {
     on_ramp(&RAMPS[family % FAMILIES], 0.5, ground)
 }
 
-fn on_ramp(ramp: &Ramp, part: f64, ground: Ground) -> Colour {
-    let place = match ground {
-        Ground::Light => 0.8 * part,
-        Ground::Dark => 0.3 + 0.7 * part,
+/// The colour at a fraction of the visible part of a ramp.
+fn on_ramp(ramp: &Ramp, fraction: f64, ground: Ground) -> Rgb {
+    let fraction = match ground {
+        Ground::Light => 0.8 * fraction,
+        Ground::Dark => 0.3 + 0.7 * fraction,
     };
-    between(ramp, place.min(1.0))
+    interpolated(ramp, fraction.min(1.0))
 }
 
-/// The mark of the readings of incidence `i` of the only sample (`None`), or of one of several.
+/// The mark of the readings of incidence `i`. The marks of a single sample (`family` is `None`) differ
+/// from incidence to incidence, those of several samples from sample to sample.
 pub fn mark(family: Option<usize>, i: usize) -> MarkShape {
-    // Those of the only sample differ among themselves, others from sample to sample.
     match family {
         None => MARKS[i % 4],
         Some(family) => MARKS[family % FAMILIES],
     }
 }
 
-/// The colour at a place of a ramp, from 0 to 1.
+/// The colour at a fraction of a ramp, from 0 to 1.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "places and colours are small positive numbers"
+    reason = "fractions and colours are small positive numbers"
 )]
-fn between(ramp: &Ramp, place: f64) -> Colour {
-    let at = place * 4.0;
+fn interpolated(ramp: &Ramp, fraction: f64) -> Rgb {
+    let at = fraction * 4.0;
     let low = (at.floor() as usize).min(3);
     let part = at - low as f64;
     std::array::from_fn(|k| {
@@ -195,9 +198,10 @@ fn between(ramp: &Ramp, place: f64) -> Colour {
 mod tests {
     use super::*;
 
-    type Rgb = [f64; 3];
+    type LinearRgb = [f64; 3];
 
-    /// Machado, Oliveira and Fernandes (2009), severity 1: what is left of linear light.
+    /// The transformations of linear light by colour blindness of severity 1, after Machado, Oliveira
+    /// and Fernandes (2009).
     const BLINDNESS: [[[f64; 3]; 3]; 3] = [
         [
             [0.1522, 1.0525, -0.2048],
@@ -216,7 +220,7 @@ mod tests {
         ],
     ];
 
-    fn linear(colour: Colour) -> Rgb {
+    fn linear(colour: Rgb) -> LinearRgb {
         colour.map(|channel| {
             let x = f64::from(channel) / 255.0;
             if x <= 0.04045 {
@@ -227,7 +231,7 @@ mod tests {
         })
     }
 
-    fn apply(matrix: &[[f64; 3]; 3], rgb: Rgb) -> Rgb {
+    fn apply(matrix: &[[f64; 3]; 3], rgb: LinearRgb) -> LinearRgb {
         matrix.map(|row| {
             row.iter()
                 .zip(rgb)
@@ -238,7 +242,7 @@ mod tests {
     }
 
     /// CIE L*a*b* under D65.
-    fn lab(rgb: Rgb) -> Rgb {
+    fn lab(rgb: LinearRgb) -> LinearRgb {
         let xyz = [
             (0.4124 * rgb[0] + 0.3576 * rgb[1] + 0.1805 * rgb[2]) / 0.9505,
             0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2],
@@ -258,7 +262,7 @@ mod tests {
         ]
     }
 
-    fn difference(a: Rgb, b: Rgb) -> f64 {
+    fn difference(a: LinearRgb, b: LinearRgb) -> f64 {
         let (a, b) = (lab(a), lab(b));
         a.iter()
             .zip(b)
@@ -267,8 +271,8 @@ mod tests {
             .sqrt()
     }
 
-    /// The least difference of two colours, as anybody sees them.
-    fn least_difference(a: Colour, b: Colour) -> f64 {
+    /// The least difference of two colours, with normal and with colour-blind vision.
+    fn least_difference(a: Rgb, b: Rgb) -> f64 {
         let (a, b) = (linear(a), linear(b));
         let seen = BLINDNESS
             .iter()
@@ -276,8 +280,8 @@ mod tests {
         seen.fold(difference(a, b), f64::min)
     }
 
-    fn contrast(colour: Colour, ground: Colour) -> f64 {
-        let luminance = |c: Colour| {
+    fn contrast(colour: Rgb, ground: Rgb) -> f64 {
+        let luminance = |c: Rgb| {
             let [r, g, b] = linear(c);
             0.2126 * r + 0.7152 * g + 0.0722 * b + 0.05
         };
@@ -287,17 +291,17 @@ mod tests {
 
     const GROUNDS: [Ground; 2] = [Ground::Light, Ground::Dark];
 
-    /// The only sample, and each of several.
+    /// A single sample, and each of several.
     fn samples() -> impl Iterator<Item = Option<usize>> {
         std::iter::once(None).chain((0..FAMILIES).map(Some))
     }
 
     #[test]
-    fn incidences_are_told_apart_by_every_eye() {
+    fn incidences_are_distinguishable_with_any_colour_vision() {
         for ground in GROUNDS {
             for family in samples() {
                 for count in [2, 5] {
-                    let all: Vec<Colour> = (0..count)
+                    let all: Vec<Rgb> = (0..count)
                         .map(|i| colour(family, i, count, ground))
                         .collect();
                     for (i, a) in all.iter().enumerate() {
@@ -312,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn samples_are_told_apart_by_their_colour_and_by_their_mark() {
+    fn samples_are_distinguishable_by_their_colour() {
         for ground in GROUNDS {
             for a in 0..FAMILIES {
                 for b in 0..a {
@@ -325,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn any_two_curves_of_any_two_samples_are_told_apart_by_colour_or_mark() {
+    fn any_two_curves_of_two_samples_are_distinguishable_by_colour_or_mark() {
         for ground in GROUNDS {
             for (a, b) in (0..FAMILIES).flat_map(|a| (0..a).map(move |b| (a, b))) {
                 for (i, j) in (0..5).flat_map(|i| (0..5).map(move |j| (i, j))) {
@@ -339,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_are_seen_on_their_ground() {
+    fn colours_are_visible_on_their_ground() {
         for (ground, [r, g, b]) in [(Ground::Light, [255; 3]), (Ground::Dark, [27; 3])] {
             for family in samples() {
                 for count in [5, 8, 20] {

@@ -1,17 +1,17 @@
-//! Which readings are shown: those of some incidences, in one plane, and no more than can be told
-//! apart. It depends on the data and the view, not on the theory, and can be kept while parameters
-//! change.
+//! The readings that a plot shows: those of some incidences, in one plane, and no more of them than
+//! the eye can distinguish. The selection depends on the data and the view but not on the theory, so
+//! that it stays valid while parameters change.
 
 use super::view::View;
 use crate::scan::{Incidence, Measurements};
 
-/// A column with more readings is thinned.
-const A_COLUMN: usize = 3;
+/// A column with more readings than this is thinned.
+const READINGS_OF_COLUMN: usize = 3;
 
-/// The readings that are shown.
+/// The readings that a plot shows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Selection {
-    /// One for each incidence, ascending.
+    /// One trace for each incidence, in ascending order.
     pub traces: Vec<Trace>,
 }
 
@@ -24,19 +24,19 @@ pub struct Trace {
     pub readings: Vec<usize>,
     /// How many readings of the incidence are in the plane.
     pub all: usize,
-    /// How many of those are zero: a logarithmic axis has no place for them.
+    /// How many of those are zero: a logarithmic axis cannot show them.
     pub zero: usize,
-    /// How many of those are negative: the polar form has no place for them either.
+    /// How many of those are negative: neither a logarithmic axis nor the polar form can show them.
     pub negative: usize,
 }
 
 impl Selection {
-    /// The readings of a view, of the incidences with these angles psi in radians; `None` takes all.
-    /// An incidence without any reading in the plane has a trace without readings.
+    /// The readings of a view at the incidence angles `incidences`, psi in radians; `None` selects
+    /// all incidences. An incidence without readings in the plane has a trace without readings.
     ///
-    /// Where one of `columns` equal intervals of the view angle from -90 to 90 deg holds more than 3
-    /// readings of an incidence, its first, lowest and highest are shown: outliers and the width of
-    /// the noise stay to be seen.
+    /// Where one of `columns` equal intervals of the view angle from -90 to 90 deg contains more than
+    /// 3 readings of an incidence, only its first, lowest and highest readings are shown, so that
+    /// outliers and the width of the noise remain visible.
     pub fn of(
         measurements: &Measurements,
         view: &View,
@@ -66,7 +66,7 @@ impl Selection {
         self.traces.iter().map(|trace| trace.readings.len()).sum()
     }
 
-    /// How many readings of these incidences are in the plane.
+    /// How many readings of the incidences are in the plane.
     pub fn all(&self) -> usize {
         self.traces.iter().map(|trace| trace.all).sum()
     }
@@ -111,21 +111,34 @@ impl Trace {
     }
 }
 
-/// The first, the lowest and the highest of the readings of a column, in their order.
+/// The first, the lowest and the highest of the readings of a column, in their order; all of them
+/// where they are few.
 fn thinned(column: &[(f64, usize)], brdf: impl Fn(usize) -> f64) -> Vec<usize> {
-    let of = |place: usize| brdf(column[place].1);
-    let places: Vec<usize> = if column.len() > A_COLUMN {
-        let by_value = |a: &usize, b: &usize| of(*a).total_cmp(&of(*b));
+    let value = |position: usize| brdf(column[position].1);
+    let positions: Vec<usize> = if column.len() > READINGS_OF_COLUMN {
+        let by_value = |a: &usize, b: &usize| value(*a).total_cmp(&value(*b));
         let lowest = (0..column.len()).min_by(by_value).unwrap_or(0);
         let highest = (0..column.len()).max_by(by_value).unwrap_or(0);
-        let mut places = vec![0, lowest, highest];
-        places.sort_unstable();
-        places.dedup();
-        places
+        let mut positions = vec![0, lowest, highest];
+        positions.sort_unstable();
+        positions.dedup();
+        positions
     } else {
         (0..column.len()).collect()
     };
-    places.into_iter().map(|place| column[place].1).collect()
+    let indices = positions.into_iter().map(|position| column[position].1);
+    indices.collect()
+}
+
+/// At most `most` of the items, evenly spaced from the first to the last.
+pub(super) fn evenly<T: Clone>(items: &[T], most: usize) -> Vec<T> {
+    if items.len() <= most {
+        return items.to_vec();
+    }
+    let last = items.len() - 1;
+    (0..most)
+        .map(|i| items[i * last / (most - 1)].clone())
+        .collect()
 }
 
 #[cfg(test)]
@@ -147,7 +160,15 @@ mod tests {
     }
 
     #[test]
-    fn a_plane_is_shown_with_the_sign_of_its_side() {
+    fn evenly_spaced_items_include_both_ends() {
+        let all: Vec<usize> = (0..90).collect();
+        let chosen = evenly(&all, 8);
+        assert_eq!(chosen, [0, 12, 25, 38, 50, 63, 76, 89]);
+        assert_eq!(evenly(&all[..3], 8), [0, 1, 2]);
+    }
+
+    #[test]
+    fn the_side_of_the_plane_gives_the_view_angle_its_sign() {
         let scan = scan([
             (30.0, 20.0, 0.0, 0.1),
             (30.0, -20.0, 0.0, 0.2),
@@ -169,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn thinning_keeps_outliers_and_tells() {
+    fn thinning_keeps_outliers_and_counts_all_readings() {
         let many = (0..9000).map(|i| {
             let brdf = if i == 4321 {
                 7.0
@@ -188,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_axis_has_no_place_for_is_counted_before_thinning() {
+    fn readings_that_an_axis_cannot_show_are_counted_before_thinning() {
         let many = (0..9000).map(|i| {
             let brdf = 0.1 * f64::from(i % 3 - 1);
             (10.0, -85.0 + 0.018 * f64::from(i), 0.0, brdf)

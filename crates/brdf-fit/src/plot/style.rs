@@ -1,30 +1,29 @@
-//! Sizes and colours of what is around the curves of the figures.
+//! Sizes and colours of everything but the curves.
 
-use plotters::style::RGBColor;
+use super::palette::Rgb;
 
-/// Size of a figure in the units of its SVG.
+/// Size of a figure, in the units of its SVG.
 pub(super) const SIZE: (u32, u32) = (960, 580);
 
 /// Text and axes.
-pub(super) const INK: RGBColor = RGBColor(30, 30, 30);
-/// Labelled lines of the grid.
-pub(super) const GRID: RGBColor = RGBColor(212, 212, 212);
-/// Lines of the grid between the labels.
-pub(super) const FINE_GRID: RGBColor = RGBColor(238, 238, 238);
-/// The only curve of a figure: the first of the palette.
-pub(super) const MAIN: RGBColor = RGBColor(0, 114, 178);
-/// A level or an angle that is pointed out.
-pub(super) const POINTED_OUT: RGBColor = RGBColor(213, 94, 0);
+pub(super) const INK: Rgb = [30, 30, 30];
+/// Grid lines with a label.
+pub(super) const GRID: Rgb = [212, 212, 212];
+/// Grid lines without a label.
+pub(super) const FINE_GRID: Rgb = [238, 238, 238];
+/// The only curve of a figure: the first colour of the palette.
+pub(super) const MAIN: Rgb = [0, 114, 178];
+/// A value or a point that is emphasised.
+pub(super) const EMPHASIS: Rgb = [213, 94, 0];
+/// The page.
+pub(super) const WHITE: Rgb = [255, 255, 255];
 
-/// Opacity of a band.
+/// Opacity of an error band.
 pub(super) const BAND: f64 = 0.22;
 
 /// Size of the text on axes and in legends.
 pub(super) const TEXT: f64 = 14.0;
 /// Size of the first line of the title.
 pub(super) const TITLE: f64 = 17.0;
-
-/// A colour of the palette as the canvas takes it.
-pub(super) fn ink([r, g, b]: [u8; 3]) -> RGBColor {
-    RGBColor(r, g, b)
-}
+/// Distance of the lines of text, where there is room.
+pub(super) const LINE_SPACING: f64 = 20.0;

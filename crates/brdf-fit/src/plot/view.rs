@@ -1,4 +1,4 @@
-//! How data are looked at: which quantity, on which axis, in which plane, in what arrangement.
+//! A view of the data: the quantity, its axis, the plane and the arrangement of a plot.
 
 use std::f64::consts::PI;
 
@@ -8,14 +8,14 @@ use crate::format::as_degrees;
 use crate::scan::Side;
 use crate::scan::angle_between;
 
-/// What is shown of the readings and of the theory.
+/// The quantity that is plotted, of the readings and of the theory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// f_r in 1/sr.
     #[default]
     Brdf,
-    /// f_r cos theta in 1/sr, which E compares.
+    /// f_r cos theta in 1/sr, the quantity that E compares.
     BrdfCosine,
 }
 
@@ -23,48 +23,48 @@ pub enum Quantity {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scale {
-    /// From zero.
+    /// Linear, with zero.
     #[default]
     Linear,
-    /// In decades.
+    /// Logarithmic, in decades.
     Logarithmic,
 }
 
-/// How the incidences are arranged.
+/// The arrangement of the incidences.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
     /// All in one plot over the view angle.
     #[default]
     Together,
-    /// A plot for each, with the same axes.
+    /// A plot for each incidence, with the same axes.
     Panels,
-    /// The paper's form: the quantity as radius at the view angle.
+    /// The form of the paper: the quantity as radius at the view angle.
     Polar,
 }
 
-/// How data are looked at.
+/// A view of the data.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct View {
-    /// What is shown.
+    /// The quantity that is plotted.
     pub quantity: Quantity,
-    /// On which axis. The polar form is linear.
+    /// The axis of the quantity. The polar form is always linear.
     pub scale: Scale,
-    /// In what arrangement.
+    /// The arrangement of the incidences.
     pub layout: Layout,
-    /// Whether the residuals are shown below; not in the polar form.
+    /// Whether the residuals are plotted below; the polar form has none.
     pub residuals: bool,
-    /// The side that counts positive.
+    /// The side on which view angles are positive.
     pub theta_positive: Side,
-    /// The plane that is shown: the azimuth phi, in radians, of its half on the source's side in
-    /// the sense of [`Side`]; 0 is the plane of incidence (in JSON in degrees, `azimuth_deg`).
+    /// The plane that is plotted: the azimuth phi in radians of its half on the source's side in the
+    /// sense of [`Side`]. 0 is the plane of incidence. In JSON it is in degrees, as `azimuth_deg`.
     #[serde(rename = "azimuth_deg", with = "as_degrees")]
     pub azimuth: f64,
 }
 
 impl Quantity {
-    /// The quantity of an f_r in 1/sr at a view zenith angle.
+    /// The quantity for an f_r in 1/sr at a view zenith angle theta.
     pub fn of(self, brdf: f64, cos_theta: f64) -> f64 {
         match self {
             Self::Brdf => brdf,
@@ -72,7 +72,7 @@ impl Quantity {
         }
     }
 
-    /// The name of its axis where there is little room.
+    /// The short name of the axis, where there is little room.
     pub fn short_name(self) -> &'static str {
         match self {
             Self::Brdf => "f_r / (1/sr)",
@@ -80,7 +80,7 @@ impl Quantity {
         }
     }
 
-    /// The name of its axis.
+    /// The name of the axis.
     pub fn axis_name(self) -> &'static str {
         match self {
             Self::Brdf => "BRDF / (1/sr)",
@@ -90,7 +90,7 @@ impl Quantity {
 }
 
 impl View {
-    /// The view angle in degrees as it is shown, of a signed one in radians that is positive on the
+    /// The view angle in degrees with the sign of the view, for one in radians that is positive on the
     /// side of the azimuth.
     pub fn signed_deg(&self, theta: f64) -> f64 {
         match self.theta_positive {
@@ -99,7 +99,7 @@ impl View {
         }
     }
 
-    /// The signed view angle in radians of one in degrees as it is shown.
+    /// The inverse of [`signed_deg`](Self::signed_deg).
     pub fn theta(&self, shown_deg: f64) -> f64 {
         match self.theta_positive {
             Side::Source => shown_deg.to_radians(),
@@ -107,13 +107,13 @@ impl View {
         }
     }
 
-    /// Whether the plane of incidence is shown.
+    /// Whether the plane is the plane of incidence.
     pub fn in_plane(&self) -> bool {
         angle_between(self.azimuth, 0.0) == 0.0 || angle_between(self.azimuth, PI) == 0.0
     }
 
-    /// The view angle in degrees at which the mirror direction of an incidence is shown; `None` in
-    /// another plane than that of incidence, which holds it at normal incidence only.
+    /// The view angle in degrees, with the sign of the view, of the mirror direction of an incidence
+    /// angle psi in radians. `None` outside the plane of incidence, except at normal incidence.
     pub fn mirror_deg(&self, psi: f64) -> Option<f64> {
         if angle_between(self.azimuth, 0.0) == 0.0 {
             Some(self.signed_deg(-psi))
@@ -124,7 +124,7 @@ impl View {
         }
     }
 
-    /// The name of the axis of view angles.
+    /// The name of the axis of the view angle.
     pub fn theta_name(&self) -> String {
         if angle_between(self.azimuth, 0.0) == 0.0 {
             let side = match self.theta_positive {
@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn angles_are_shown_with_the_sign_of_the_side() {
+    fn view_angles_have_the_sign_of_the_positive_side() {
         let source = View::default();
         let forward = View {
             theta_positive: Side::Forward,
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_view_goes_to_json_and_back() {
+    fn a_view_is_unchanged_by_json() {
         let view = View {
             layout: Layout::Polar,
             azimuth: 90_f64.to_radians(),

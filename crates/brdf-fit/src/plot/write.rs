@@ -1,16 +1,23 @@
-//! Figures as files.
+//! Writing of figures to files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{Figure, PlotError};
+use super::error::PlotError;
+use super::figure::Figure;
 use crate::output::write_file;
 
-/// Pixels of a written PNG for each unit of the SVG.
+/// Pixels of a written PNG for each unit of the SVG: print quality.
 const PRINT_SCALE: f32 = 2.0;
 
 /// Writes each figure as `prefix-name.svg` and `prefix-name.png` (without the hyphen where the
-/// prefix is empty) into a folder, which is made where it does not exist. Returns the files.
+/// prefix is empty) to a folder, which is created where it does not exist. Returns the paths of the
+/// files.
+///
+/// # Errors
+///
+/// Where the folder cannot be created, a figure cannot be converted to PNG, or a file cannot be
+/// written; the files before it remain.
 pub fn write_figures(
     figures: &[Figure],
     folder: &Path,

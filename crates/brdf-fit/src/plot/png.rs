@@ -1,4 +1,4 @@
-//! PNG of an SVG, with a typeface of its own.
+//! PNG of an SVG, with a bundled typeface.
 
 use std::sync::{Arc, LazyLock};
 
@@ -6,12 +6,12 @@ use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
 
-use super::PlotError;
+use super::error::PlotError;
 
 /// The largest side of an image, in pixels.
-pub(super) const LARGEST_SIDE: f32 = 20_000.0;
+const LARGEST_SIDE: f32 = 20_000.0;
 
-/// The only typeface: what the machine has installed is of no influence.
+/// The bundled typeface, so that a PNG does not depend on the typefaces of the machine.
 static TYPEFACES: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut typefaces = Database::new();
     typefaces.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
@@ -24,13 +24,17 @@ static TYPEFACES: LazyLock<Arc<Database>> = LazyLock::new(|| {
     Arc::new(typefaces)
 });
 
-/// The PNG on white, `scale` pixels a unit.
+/// The PNG on white, with `scale` pixels for each unit of the SVG.
+///
+/// # Errors
+///
+/// Where `scale` does not give an image of 1 to 20,000 pixels a side, or resvg fails.
 pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
     let options = Options {
         fontdb: Arc::clone(&TYPEFACES),
         ..Options::default()
     };
-    let tree = Tree::from_str(svg, &options)?;
+    let tree = Tree::from_str(svg, &options).map_err(|error| PlotError::Svg(error.to_string()))?;
     let size = tree.size();
     let pixels = |side: f32| {
         let pixels = (side * scale).round();
@@ -41,7 +45,10 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
     let sides = pixels(size.width()).zip(pixels(size.height()));
     let mut image = sides
         .and_then(|(width, height)| Pixmap::new(width, height))
-        .ok_or(PlotError::Scale(scale))?;
+        .ok_or(PlotError::Scale {
+            scale,
+            largest_side: LARGEST_SIDE,
+        })?;
     image.fill(Color::WHITE);
     let transform = Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
@@ -53,7 +60,7 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "checked to be from 1 to the largest side"
+    reason = "from 1 to the largest side"
 )]
 fn whole(pixels: f32) -> u32 {
     pixels as u32

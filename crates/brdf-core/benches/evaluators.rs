@@ -5,7 +5,7 @@
 
 use std::hint::black_box;
 
-use brdf_core::evaluator::{Evaluator, Exact, FittedFresnel, Points, Single};
+use brdf_core::evaluator::{Double, Evaluator, FittedFresnel, Points, Single};
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Parameters};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rayon::prelude::*;
@@ -70,7 +70,7 @@ fn in_cache(c: &mut Criterion) {
         theta: &theta,
         phi: &phi,
     };
-    let exact = Exact::new(brdf);
+    let exact = Double::new(brdf);
     for (name, points) in [("cosines", from_cosines), ("angles", from_angles)] {
         group.bench_function(format!("f64 batch from {name}"), |b| {
             b.iter(|| exact.values(black_box(&points), &mut out));
@@ -125,7 +125,7 @@ fn families(c: &mut Criterion) {
     group.throughput(Throughput::Elements(POINTS as u64));
     for family in Family::ALL {
         let (mut out, mut out32) = (vec![0.0; POINTS], vec![0.0_f32; POINTS]);
-        let (exact, single) = (Exact::new(brdf(family)), Single::new(brdf(family)));
+        let (exact, single) = (Double::new(brdf(family)), Single::new(brdf(family)));
         group.bench_function(format!("{family:?} f64"), |b| {
             b.iter(|| exact.values(black_box(&points), &mut out));
         });
@@ -210,7 +210,7 @@ fn triad([a, b, c]: [&[f32]; 3], out: &mut [f32]) {
 fn grid(c: &mut Criterion) {
     let [psi, theta, phi] = angles(POINTS);
     let psi = &psi[..16];
-    let exact = Exact::new(brdf(Family::Paper));
+    let exact = Double::new(brdf(Family::Paper));
     let mut out = vec![0.0; psi.len() * POINTS];
     let mut group = c.benchmark_group("grid, 16 incidences, 1024 views");
     group.throughput(Throughput::Elements(out.len() as u64));

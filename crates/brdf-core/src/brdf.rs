@@ -2,95 +2,13 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use serde::{Deserialize, Serialize};
-
-use crate::Geometry;
-use crate::facet::{Ellipsoid, FacetDistribution, P_DOMAIN};
+use crate::direction_pair::HalfVector;
+use crate::facet::{Ellipsoid, FacetDistribution};
 use crate::fresnel::Dielectric;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use crate::geometry::Geometry;
+use crate::numeric::{Ratio, Real};
+use crate::parameters::{ParameterError, Parameters, check_refractive_index};
 use crate::shadowing::{Shadowing, VGroove};
-
-/// The smallest and the largest k1 of the model's domain.
-pub const K1_DOMAIN: (f64, f64) = (1e-8, 1e8);
-
-/// The smallest and the largest refractive index of the model's domain.
-pub const N_DOMAIN: (f64, f64) = (1.0, 1e5);
-
-/// The three parameters of the model, in the paper's order.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "RawParameters")]
-pub struct Parameters {
-    /// Specular weight k2 = (pi/4) f(0) R(0) >= 0, dimensionless.
-    pub k2: f64,
-    /// Diffuse weight kD >= 0: the hemispherical reflectance of the Lambertian part.
-    pub kd: f64,
-    /// Width k1 of the facet distribution, within [`K1_DOMAIN`]; small is narrow.
-    pub k1: f64,
-}
-
-/// Why a set of parameters is outside the model's domain.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum ParameterError {
-    /// The specular weight is negative or not finite.
-    #[error("specular weight k2 = {0}: expected a finite number >= 0")]
-    K2(f64),
-    /// The diffuse weight is negative or not finite.
-    #[error("diffuse weight kD = {0}: expected a finite number >= 0")]
-    Kd(f64),
-    /// The width is outside [`K1_DOMAIN`].
-    #[error("facet width k1 = {0}: expected a number in [{min:e}, {max:e}]", min = K1_DOMAIN.0, max = K1_DOMAIN.1)]
-    K1(f64),
-    /// The refractive index is outside [`N_DOMAIN`].
-    #[error("refractive index n = {0}: expected a number in [{min}, {max:e}]", min = N_DOMAIN.0, max = N_DOMAIN.1)]
-    N(f64),
-    /// The exponent is outside [`P_DOMAIN`].
-    #[error("exponent p = {0}: expected a number in [{min}, {max}]", min = P_DOMAIN.0, max = P_DOMAIN.1)]
-    P(f64),
-}
-
-/// Parameters as they stand in a file, before they are checked.
-#[derive(Deserialize)]
-struct RawParameters {
-    k2: f64,
-    kd: f64,
-    k1: f64,
-}
-
-impl TryFrom<RawParameters> for Parameters {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawParameters) -> Result<Self, ParameterError> {
-        Self::new(raw.k2, raw.kd, raw.k1)
-    }
-}
-
-impl Parameters {
-    /// Parameters k2 >= 0, kD >= 0 and k1 in [`K1_DOMAIN`].
-    pub fn new(k2: f64, kd: f64, k1: f64) -> Result<Self, ParameterError> {
-        let weight = 0.0..=f64::MAX;
-        if !weight.contains(&k2) {
-            return Err(ParameterError::K2(k2));
-        }
-        if !weight.contains(&kd) {
-            return Err(ParameterError::Kd(kd));
-        }
-        if !(K1_DOMAIN.0..=K1_DOMAIN.1).contains(&k1) {
-            return Err(ParameterError::K1(k1));
-        }
-        Ok(Self { k2, kd, k1 })
-    }
-}
-
-/// Checks a refractive index against [`N_DOMAIN`].
-pub fn check_refractive_index(n: f64) -> Result<f64, ParameterError> {
-    if (N_DOMAIN.0..=N_DOMAIN.1).contains(&n) {
-        Ok(n)
-    } else {
-        Err(ParameterError::N(n))
-    }
-}
 
 /// A BRDF of facets and a Lambertian part, put together of a facet distribution, a shadowing
 /// function and the Fresnel factor:
@@ -128,13 +46,13 @@ pub type ThreeParameterBrdf = MicrofacetBrdf<Ellipsoid, VGroove>;
 impl ThreeParameterBrdf {
     /// The model of the parameters at the refractive index n in [`N_DOMAIN`].
     pub fn new(parameters: Parameters, n: f64) -> Result<Self, ParameterError> {
-        Self::of_terms(parameters, n, Ellipsoid::new, |_| VGroove)
+        Self::from_terms(parameters, n, Ellipsoid::new, |_| VGroove)
     }
 }
 
 impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     /// The model of the parameters at the refractive index n, with the terms of the width k1.
-    pub(crate) fn of_terms(
+    pub(crate) fn from_terms(
         parameters: Parameters,
         n: f64,
         facet: impl FnOnce(f64) -> F,
@@ -170,7 +88,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
-        let fresnel = self.fresnel.quotient_at(geometry);
+        let fresnel = self.fresnel.ratio_at(geometry);
         self.with_fresnel(fresnel, psi, theta, &geometry.half())
     }
 
@@ -179,13 +97,13 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     #[inline]
     pub(crate) fn with_fresnel<R: Real>(
         &self,
-        fresnel: Quotient<R>,
+        fresnel: Ratio<R>,
         cos_psi: R,
         cos_theta: R,
         half: &HalfVector<R>,
     ) -> R {
-        let facet = self.facet.quotient(half);
-        let shadowing = self.shadowing.quotient(cos_psi, cos_theta, half);
+        let facet = self.facet.ratio(half);
+        let shadowing = self.shadowing.ratio(cos_psi, cos_theta, half);
         let specular = (facet * shadowing * fresnel).value();
         specular.mul_add(R::of(self.k2 * FRAC_1_PI), R::of(self.kd * FRAC_1_PI))
     }
@@ -194,7 +112,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
         let (t, sec) = (geometry.tan2_alpha, geometry.sec_alpha);
-        let fresnel = self.fresnel.quotient_at(geometry).value() * FRAC_1_PI;
+        let fresnel = self.fresnel.ratio_at(geometry).value() * FRAC_1_PI;
         let shadowing = self.shadowing.over_cosines_at(geometry);
         let facet = self.facet.relative(t, sec);
         let mut by_k1 = self.facet.derivative_k1(t, sec) * (shadowing * fresnel);
@@ -226,7 +144,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self
                 .facet
                 .derivative_p(geometry.tan2_alpha, geometry.sec_alpha)
-            * self.fresnel.quotient_at(geometry).value()
+            * self.fresnel.ratio_at(geometry).value()
             * self.shadowing.over_cosines_at(geometry)
     }
 
@@ -263,7 +181,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
 /// R0(gamma) G / (cos psi cos theta).
 #[inline]
 pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
-    fresnel.quotient_at(geometry).value() * VGroove.over_cosines_at(geometry)
+    fresnel.ratio_at(geometry).value() * VGroove.over_cosines_at(geometry)
 }
 
 #[cfg(test)]

@@ -4,11 +4,12 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
-use crate::facet::{Beckmann, Ellipsoid, FacetDistribution as _, Ggx, P_DOMAIN, Power};
+use crate::brdf::{MicrofacetBrdf, ThreeParameterBrdf};
+use crate::facet::{Beckmann, Ellipsoid, FacetDistribution as _, Ggx, Power};
 use crate::fresnel::Dielectric;
+use crate::geometry::{Geometry, GeometryError};
+use crate::parameters::{ModelParameters, ParameterError, Parameters, check_exponent};
 use crate::shadowing::{Smith, VGroove};
-use crate::{Geometry, GeometryError};
 
 /// A combination of facet distribution and shadowing; the Fresnel factor and the Lambertian part
 /// are the same for all.
@@ -48,44 +49,6 @@ impl fmt::Display for Family {
             Self::Ggx => "ggx",
             Self::Beckmann => "beckmann",
         })
-    }
-}
-
-/// All numbers that a model of any family may have, in the order (k2, kD, k1, n, p).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ModelParameters {
-    /// Specular weight k2 >= 0.
-    pub k2: f64,
-    /// Diffuse weight kD >= 0.
-    pub kd: f64,
-    /// Width k1 of the facet distribution.
-    pub k1: f64,
-    /// Refractive index n of the facets.
-    pub n: f64,
-    /// Exponent p of the facet distribution; 1 where the family has none.
-    pub p: f64,
-}
-
-impl ModelParameters {
-    /// The paper's three parameters at the refractive index n.
-    pub fn three(parameters: Parameters, n: f64) -> Self {
-        let Parameters { k2, kd, k1 } = parameters;
-        Self {
-            k2,
-            kd,
-            k1,
-            n,
-            p: 1.0,
-        }
-    }
-
-    /// k2, kD and k1.
-    pub fn parameters(&self) -> Parameters {
-        Parameters {
-            k2: self.k2,
-            kd: self.kd,
-            k1: self.k1,
-        }
     }
 }
 
@@ -159,22 +122,20 @@ impl AnyBrdf {
         let (three, n, p) = (at.parameters(), at.n, at.p);
         Ok(match family {
             Family::Paper => Self::Paper(ThreeParameterBrdf::new(three, n)?),
-            Family::Smith => Self::Smith(MicrofacetBrdf::of_terms(
+            Family::Smith => Self::Smith(MicrofacetBrdf::from_terms(
                 three,
                 n,
                 Ellipsoid::new,
                 Smith::new,
             )?),
             Family::Power => {
-                if !(P_DOMAIN.0..=P_DOMAIN.1).contains(&p) {
-                    return Err(ParameterError::P(p));
-                }
+                let p = check_exponent(p)?;
                 let facet = |k1| Power::new(k1, p);
-                Self::Power(MicrofacetBrdf::of_terms(three, n, facet, |_| VGroove)?)
+                Self::Power(MicrofacetBrdf::from_terms(three, n, facet, |_| VGroove)?)
             }
-            Family::Ggx => Self::Ggx(MicrofacetBrdf::of_terms(three, n, Ggx::new, Smith::new)?),
+            Family::Ggx => Self::Ggx(MicrofacetBrdf::from_terms(three, n, Ggx::new, Smith::new)?),
             Family::Beckmann => {
-                Self::Beckmann(MicrofacetBrdf::of_terms(three, n, Beckmann::new, |_| {
+                Self::Beckmann(MicrofacetBrdf::from_terms(three, n, Beckmann::new, |_| {
                     VGroove
                 })?)
             }

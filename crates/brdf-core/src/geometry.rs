@@ -9,8 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::Vector3;
 
-use crate::pair::{HalfVector, Pair, TanDifference, Zenith};
-use crate::trigonometry::{exchanged_if, sin2_cos2_of_any_half};
+use crate::direction_pair::{DirectionPair, HalfDifference, HalfVector, Zenith};
+use crate::numeric::{exchanged_if, sin2_cos2_of_any_half};
 
 /// How far the length of a direction vector may be from 1.
 ///
@@ -117,7 +117,7 @@ impl Geometry {
         let across2 = half.x * half.x + half.y * half.y;
         let sin2_gamma = 0.25 * difference.norm_squared();
         let length2 = 0.25 * half.norm_squared();
-        let pair = Pair::of_half(source.z, view.z, 0.25 * across2, length2);
+        let pair = DirectionPair::from_half(source.z, view.z, 0.25 * across2, length2);
         Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))
     }
 
@@ -132,7 +132,7 @@ impl Geometry {
         if !(-1.0..=1.0).contains(&cos_phi) {
             return Err(GeometryError::AzimuthCosine(cos_phi));
         }
-        let pair = Pair::from_cosines(cos_psi, cos_theta, cos_phi);
+        let pair = DirectionPair::from_cosines(cos_psi, cos_theta, cos_phi);
         // |source - view|^2: along the normal, across it in the plane, and out of it.
         let along = cos_psi - cos_theta;
         let sin2 = |cosine: f64| (1.0 - cosine) * (1.0 + cosine);
@@ -152,8 +152,8 @@ impl Geometry {
     #[inline(always)]
     fn from_half_azimuth(psi: f64, theta: f64, sin2_half_phi: f64, cos2_half_phi: f64) -> Self {
         let (source, view) = (Zenith::new(psi), Zenith::new(theta));
-        let difference = TanDifference::of(source, view);
-        let pair = Pair::from_difference(source, view, difference, cos2_half_phi);
+        let difference = HalfDifference::of(source, view);
+        let pair = DirectionPair::from_difference(source, view, difference, cos2_half_phi);
         let h_z = source.cos + view.cos;
         let sines = 4.0 * source.sin * view.sin;
         // One rounding less than from the pair.
@@ -165,7 +165,7 @@ impl Geometry {
     }
 
     #[inline(always)]
-    fn from_pair(pair: &Pair<f64>, tan2_alpha: f64, sin2_gamma: f64) -> Self {
+    fn from_pair(pair: &DirectionPair<f64>, tan2_alpha: f64, sin2_gamma: f64) -> Self {
         let half = pair.half;
         Self {
             cos_psi: pair.cos_psi,
@@ -181,7 +181,7 @@ impl Geometry {
     /// The same for the terms of the model.
     #[inline(always)]
     pub(crate) fn half(&self) -> HalfVector<f64> {
-        HalfVector::of_tilt(self.tan2_alpha, self.sec_alpha)
+        HalfVector::from_tilt(self.tan2_alpha, self.sec_alpha)
     }
 
     /// cos psi, the cosine of the incidence angle.

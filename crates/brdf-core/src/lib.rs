@@ -57,26 +57,28 @@
 //! [`shadowing`] for G over the cosines. f_r and its derivatives are made of operations that are
 //! rounded in one way only: they have the same digits on every machine.
 
-pub mod brdf;
+mod brdf;
+mod direction_pair;
 pub mod evaluator;
 pub mod facet;
-pub mod family;
+mod family;
 pub mod fresnel;
-pub mod geometry;
-mod pair;
+mod geometry;
+pub mod numeric;
+mod parameters;
 pub mod published;
-mod quadrature;
-mod quotient;
-pub mod real;
-pub mod reflectance;
+mod reflectance;
 pub mod sampling;
 pub mod scene;
 pub mod shadowing;
-mod trigonometry;
 
-pub use brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
-pub use family::{AnyBrdf, Family, ModelParameters};
+pub use brdf::{MicrofacetBrdf, ThreeParameterBrdf, mirror_factor};
+pub use direction_pair::HalfVector;
+pub use family::{AnyBrdf, Family};
 pub use geometry::{Geometry, GeometryError};
-pub use pair::HalfVector;
-pub use quotient::Quotient;
+pub use parameters::{
+    K1_DOMAIN, ModelParameters, N_DOMAIN, P_DOMAIN, ParameterError, Parameters,
+    check_refractive_index,
+};
+pub use reflectance::{ENERGY_CHECK_LIMIT, specular_reflectance};
 pub use sampling::{Sample, Sampler};

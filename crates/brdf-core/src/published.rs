@@ -1,6 +1,6 @@
 //! Table 1 of the paper: the fitted parameters of three lacquers.
 
-use crate::Parameters;
+use crate::parameters::Parameters;
 
 /// One row of Table 1 of Li, Yan and Wu (2002).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,9 +6,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use crate::brdf::MicrofacetBrdf;
 use crate::facet::FacetDistribution;
 use crate::fresnel::Dielectric;
-use crate::quadrature::integrate;
+use crate::geometry::{Geometry, GeometryError};
+use crate::numeric::integrate;
 use crate::shadowing::Shadowing;
-use crate::{Geometry, GeometryError};
 
 /// Up to this incidence angle the energy check looks for a reflectance above 1, in radians
 /// (89 deg).

@@ -22,9 +22,9 @@ use std::f64::consts::{FRAC_1_PI, PI, TAU};
 use nalgebra::Vector3;
 
 use crate::facet::FacetDistribution;
-use crate::family::each;
+use crate::family::{AnyBrdf, each};
+use crate::geometry::{Geometry, GeometryError};
 use crate::reflectance::specular_reflectance;
-use crate::{AnyBrdf, Geometry, GeometryError};
 
 /// Incidences at which the weight of the specular lobe is computed. Between them it is interpolated:
 /// what it is changes the variance and nothing else.

@@ -5,7 +5,7 @@
 use std::f64::consts::{PI, TAU};
 
 use brdf_core::evaluator::{
-    Evaluator, Exact, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
+    Double, Evaluator, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
     LengthError, Points, Single, SpecularOnly,
 };
 use brdf_core::published::PUBLISHED;
@@ -77,7 +77,7 @@ proptest! {
         let domain = all_directions(largest_deg);
         let error = |coordinates| {
             let probe = Probe::new(&brdf, &domain, coordinates, 2000, seed);
-            probe.errors(&Exact::new(brdf)).max
+            probe.errors(&Double::new(brdf)).max
         };
         // An exponent multiplies the rounding of the logarithm; tails of exp(-x) that of x.
         let allowed = match brdf {
@@ -126,7 +126,7 @@ proptest! {
         brdf in any_brdf(1e-3..10.0), count in 0..100_usize,
     ) {
         let arrays = single_points();
-        for evaluator in [&Exact::new(brdf) as &dyn Evaluator, &Single::new(brdf)] {
+        for evaluator in [&Double::new(brdf) as &dyn Evaluator, &Single::new(brdf)] {
             let mut together = vec![0.0; count];
             evaluator.values(&angles(&arrays, count), &mut together).unwrap();
             for (i, value) in together.iter().enumerate() {
@@ -140,7 +140,7 @@ proptest! {
     fn azimuths_beyond_a_turn_are_those_within(
         brdf in any_brdf(1e-2..10.0), psi in 0.0..1.5, theta in -1.5..1.5, turns in 1..50_i32,
     ) {
-        let exact = Exact::new(brdf);
+        let exact = Double::new(brdf);
         let (near, far) = (2.0, 2.0 + f64::from(turns) * TAU);
         let (near, far) = (exact.value(psi, theta, near), exact.value(psi, theta, far));
         prop_assert!((near / far - 1.0).abs() < 1e-9);
@@ -149,7 +149,7 @@ proptest! {
 
 #[test]
 fn arrays_of_different_lengths_are_refused() {
-    let exact = Exact::new(brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0));
+    let exact = Double::new(brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0));
     let points = Points::Cosines {
         psi: &[1.0, 1.0],
         theta: &[1.0],
@@ -183,7 +183,7 @@ fn outside_the_domain_there_is_no_value() {
     let domain = all_directions(80.0);
     let table = IsotropicTable::new(brdf, &domain, 1e-2, 1 << 20).unwrap();
     let evaluators: [&dyn Evaluator; 5] = [
-        &Exact::new(brdf),
+        &Double::new(brdf),
         &Single::new(brdf),
         &FittedFresnel::new(brdf, 0.0, 1e-2).unwrap(),
         &Lambertian::new(0.1),
@@ -238,7 +238,7 @@ fn a_grid_has_the_values_of_its_points() {
     for family in Family::ALL {
         let brdf = brdf(family, 0.3, 0.1, 0.2, 1.5, 1.3);
         let mut grid = vec![0.0; psi.len() * theta.len()];
-        Exact::new(brdf)
+        Double::new(brdf)
             .grid(&psi, &theta, &phi, &mut grid)
             .unwrap();
         let narrow = |a: &[f64]| a.iter().map(|&x| x as f32).collect::<Vec<_>>();
@@ -270,7 +270,9 @@ fn many_points_have_the_values_of_few() {
         unreachable!("the coordinates asked for")
     };
     let mut many = vec![0.0; count];
-    Exact::new(brdf).values(&probe.points(), &mut many).unwrap();
+    Double::new(brdf)
+        .values(&probe.points(), &mut many)
+        .unwrap();
     for from in (0..count).step_by(1000) {
         let range = from..from + 1000;
         let mut few = vec![0.0; 1000];
@@ -279,7 +281,7 @@ fn many_points_have_the_values_of_few() {
             theta: &theta[range.clone()],
             phi: &phi[range.clone()],
         };
-        Exact::new(brdf).values(&part, &mut few).unwrap();
+        Double::new(brdf).values(&part, &mut few).unwrap();
         assert_eq!(few, many[range]);
     }
 }

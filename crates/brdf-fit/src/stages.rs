@@ -4,8 +4,7 @@ use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 
-use brdf_core::brdf::check_refractive_index;
-use brdf_core::{ModelParameters, ParameterError, Parameters};
+use brdf_core::{ModelParameters, ParameterError, Parameters, check_refractive_index};
 use serde::{Deserialize, Serialize};
 
 use crate::criterion::{Criterion, CriterionError};

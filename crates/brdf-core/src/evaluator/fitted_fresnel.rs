@@ -1,14 +1,15 @@
 //! The model in `f32` with a polynomial for its Fresnel factor.
 
-use super::vector::{Formula, evaluate, native, rounded};
-use super::{Evaluator, LengthError, Points, Precision};
-use crate::AnyBrdf;
+use super::formula::Formula;
+use super::interface::{Evaluator, Precision};
+use super::points::{LengthError, Points};
+use super::vector::{evaluate, native, rounded};
 use crate::brdf::MicrofacetBrdf;
+use crate::direction_pair::DirectionPair;
 use crate::facet::FacetDistribution;
-use crate::family::each;
+use crate::family::{AnyBrdf, each};
 use crate::fresnel::{FresnelFactor, FresnelPolynomial};
-use crate::pair::Pair;
-use crate::real::Real;
+use crate::numeric::Real;
 use crate::shadowing::Shadowing;
 
 /// Coefficients of the two polynomials that there are: that of the lower degree is taken where its
@@ -77,9 +78,9 @@ impl<F: FacetDistribution, S: Shadowing, X: FresnelFactor> Formula
 {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
+    fn at<R: Real>(&self, pair: &DirectionPair<R>) -> [R; 1] {
         let half = &pair.half;
-        let fresnel = self.fresnel.quotient(half.length, half.length2);
+        let fresnel = self.fresnel.ratio(half.length, half.length2);
         let (psi, theta) = (pair.cos_psi, pair.cos_theta);
         [pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))]
     }

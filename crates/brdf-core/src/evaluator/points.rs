@@ -2,8 +2,17 @@
 
 use std::ops::Range;
 
-use super::LengthError;
-use crate::real::Primitive;
+use crate::numeric::Primitive;
+
+/// Arrays of different lengths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("an array has {found} elements: expected {expected}, as many as the others have")]
+pub struct LengthError {
+    /// The length of the first array.
+    pub expected: usize,
+    /// That of the other.
+    pub found: usize,
+}
 
 /// Points at which a BRDF is evaluated, as arrays of one coordinate each, all of the same length.
 ///
@@ -110,6 +119,23 @@ impl<'a, T: Primitive> Points<'a, T> {
                 view: [d, e, f],
             } => ([a, b, c, d, e, f], 6),
         }
+    }
+}
+
+/// Checks the lengths of the arrays of a grid.
+pub(crate) fn check_grid(
+    psi: usize,
+    theta: usize,
+    phi: usize,
+    out: usize,
+) -> Result<(), LengthError> {
+    let lengths = [(theta, phi), (psi * theta, out)];
+    match lengths
+        .into_iter()
+        .find(|(expected, found)| expected != found)
+    {
+        Some((expected, found)) => Err(LengthError { expected, found }),
+        None => Ok(()),
     }
 }
 

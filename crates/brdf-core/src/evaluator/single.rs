@@ -1,10 +1,9 @@
 //! The model in `f32`, with or without its Lambertian part.
 
-use super::exact::check_grid;
+use super::interface::{Evaluator, Precision};
+use super::points::{LengthError, Points, check_grid};
 use super::vector::{evaluate, grid, native, rounded};
-use super::{Evaluator, LengthError, Points, Precision};
-use crate::AnyBrdf;
-use crate::family::each;
+use crate::family::{AnyBrdf, each};
 
 /// The model in `f32`: the same formula, whose forms without cancellation are what makes that
 /// possible.
@@ -22,7 +21,7 @@ impl Single {
         Self { brdf }
     }
 
-    /// [`Exact::grid`](super::Exact::grid) in `f32`.
+    /// [`Double::grid`](super::Double::grid) in `f32`.
     pub fn grid(
         &self,
         psi: &[f32],

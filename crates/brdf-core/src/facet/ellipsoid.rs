@@ -2,10 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
 /// The paper's facet distribution: in polar coordinates an ellipsoid of revolution that touches
 /// the surface at the origin, k1 being its transverse axis over its axis along the normal.
@@ -43,9 +42,9 @@ impl FacetDistribution for Ellipsoid {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
         let along2 = half.along * half.along;
-        Quotient {
+        Ratio {
             numerator: half.along * half.length,
             denominator: half
                 .across2

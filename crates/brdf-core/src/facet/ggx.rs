@@ -2,10 +2,9 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
 /// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33),
 /// its roughness alpha_g being the width k1:
@@ -38,12 +37,12 @@ impl FacetDistribution for Ggx {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
         let k1_squared = R::of(self.k1_squared);
         let along2 = half.along * half.along;
         let above = k1_squared * half.length2;
         let below = k1_squared.mul_add(along2, half.across2);
-        Quotient {
+        Ratio {
             numerator: above * above,
             denominator: below * below,
         }

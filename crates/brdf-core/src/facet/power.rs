@@ -2,15 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quadrature::integrate;
-use crate::quotient::Quotient;
-use crate::real::Real;
-
-/// The smallest and the largest exponent p. At the larger, the widest distribution, which rises
-/// like k1^(2 p) towards grazing tilts, still is within the range of numbers.
-pub const P_DOMAIN: (f64, f64) = (0.1, 16.0);
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Elementary as _, Ratio, Real, integrate};
 
 /// Eq. (2) with an exponent p on its denominator:
 ///
@@ -64,8 +58,8 @@ impl FacetDistribution for Power {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
-        Quotient {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
+        Ratio {
             numerator: (R::of(self.p) * self.logarithm(half)).exp() * half.along,
             denominator: half.length,
         }
@@ -81,8 +75,8 @@ impl FacetDistribution for Power {
     /// The logarithm of the fraction times the value.
     #[inline]
     fn derivative_p(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        let half = HalfVector::of_tilt(tan2_alpha, sec_alpha);
-        self.logarithm(&half) * self.quotient(&half).value()
+        let half = HalfVector::from_tilt(tan2_alpha, sec_alpha);
+        self.logarithm(&half) * self.ratio(&half).value()
     }
 
     /// The normalisation integral, 2 pi times that of f(alpha)/f(0) cos alpha sin alpha d alpha, by

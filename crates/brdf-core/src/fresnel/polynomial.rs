@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::{Dielectric, FresnelFactor};
-use crate::quotient::Quotient;
-use crate::real::{Real, horner};
+use super::dielectric::Dielectric;
+use super::factor::FresnelFactor;
+use crate::numeric::{Ratio, Real, horner};
 
 /// Terms of the Chebyshev series that are worked out, of which a polynomial takes the first.
 const TERMS: usize = 64;
@@ -94,9 +94,9 @@ fn powers<const N: usize>(series: &[f64], range: f64) -> [f64; N] {
 
 impl<const N: usize> FresnelFactor for FresnelPolynomial<N> {
     #[inline]
-    fn quotient<R: Real>(&self, cos_gamma: R, _cos2_gamma: R) -> Quotient<R> {
+    fn ratio<R: Real>(&self, cos_gamma: R, _cos2_gamma: R) -> Ratio<R> {
         let from_pole = cos_gamma + R::of(self.from_pole);
-        Quotient {
+        Ratio {
             numerator: horner(R::of(1.0) - cos_gamma, &self.coefficients),
             denominator: from_pole * from_pole,
         }
@@ -117,7 +117,7 @@ mod tests {
             let c = least + (1.0 - least) * f64::from(i) / 1000.0;
             let c = c.max(1e-9);
             let exact = fresnel.relative(c);
-            let error = (polynomial.quotient(c, c * c).value() / exact - 1.0).abs();
+            let error = (polynomial.ratio(c, c * c).value() / exact - 1.0).abs();
             assert!(error <= bound, "{n} {c}: {error} > {bound}");
         }
         bound

@@ -2,11 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use super::Probe;
-use super::probe::single_value;
-use crate::AnyBrdf;
+use super::probe::{Probe, single_value};
 use crate::evaluator::{Evaluator, Precision};
-use crate::real::Primitive;
+use crate::family::AnyBrdf;
+use crate::numeric::Primitive;
 
 /// For how long an evaluator is timed, if one pass is not longer.
 const WATCHED: Duration = Duration::from_millis(3);

@@ -4,12 +4,15 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::{Azimuth, Errors, Probe, Scene, TIMED, cost};
-use crate::AnyBrdf;
+use super::cost::{TIMED, cost};
+use super::domain::Azimuth;
+use super::probe::{Errors, Probe};
+use super::requirements::Scene;
 use crate::evaluator::{
-    Evaluator, Exact, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
+    Double, Evaluator, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
     Single, SpecularOnly, TableError,
 };
+use crate::family::AnyBrdf;
 
 /// Points at which the errors are looked for.
 const PROBED: usize = 1 << 17;
@@ -191,7 +194,7 @@ impl<'a> Trial<'a> {
                 .ok_or(Refusal::Unfit("no polynomial is within the tolerance"))
         });
         self.offer("f32", || Ok(Single::new(brdf)));
-        self.offer("exact", || Ok(Exact::new(brdf)));
+        self.offer("exact", || Ok(Double::new(brdf)));
     }
 
     fn tables(&mut self) {

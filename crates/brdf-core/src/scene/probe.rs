@@ -6,10 +6,12 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Azimuth, Coordinates, Domain};
+use super::domain::{Azimuth, Domain};
+use super::requirements::Coordinates;
 use crate::evaluator::{Evaluator, Points, Precision};
-use crate::real::Primitive;
-use crate::{AnyBrdf, Geometry};
+use crate::family::AnyBrdf;
+use crate::geometry::Geometry;
+use crate::numeric::Primitive;
 
 /// Points of a probe that decides on a table.
 const TABLE_PROBE: usize = 1 << 15;

@@ -1,9 +1,8 @@
 //! Smith's shadowing for the GGX distribution, source and view independent of each other.
 
-use super::Shadowing;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::factor::Shadowing;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
 /// The separable Smith factor with the GGX form of each side (Walter et al., EGSR 2007, eq. 34),
 /// its roughness being the width k1 of the facet distribution:
@@ -43,10 +42,10 @@ impl Shadowing for Smith {
     const DEPENDS_ON_WIDTH: bool = true;
 
     #[inline]
-    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, _: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, _: &HalfVector<R>) -> Ratio<R> {
         let (_, source) = self.rough_and_root(cos_psi);
         let (_, view) = self.rough_and_root(cos_theta);
-        Quotient {
+        Ratio {
             numerator: R::of(4.0),
             denominator: (cos_psi + source) * (cos_theta + view),
         }

@@ -1,9 +1,8 @@
 //! The V-groove factor of Torrance and Sparrow.
 
-use super::Shadowing;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::factor::Shadowing;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
 /// The V-groove factor of Torrance and Sparrow (JOSA 57, 1105, 1967), which the paper takes:
 ///
@@ -25,12 +24,12 @@ impl Shadowing for VGroove {
     const DEPENDS_ON_WIDTH: bool = false;
 
     #[inline]
-    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Ratio<R> {
         let h_z = cos_psi + cos_theta;
         let along2 = half.along * half.along;
         let open = along2 * (cos_psi * cos_theta);
         let blocked = R::of(0.25) * h_z * half.length2 * cos_psi.max(cos_theta);
-        Quotient {
+        Ratio {
             numerator: along2,
             denominator: open.max(blocked),
         }

@@ -5,11 +5,12 @@ use serde::{Deserialize, Serialize};
 use super::lattice::{Lattice, Wanted};
 use super::{Table, TableError, signed_tilt, tilt_at, value_in_plane, view_at};
 use crate::AnyBrdf;
+use crate::direction_pair::DirectionPair;
 use crate::evaluator::Points;
+use crate::evaluator::formula::Formula;
 use crate::evaluator::points::BLOCK;
-use crate::evaluator::vector::{Formula, evaluate_all};
-use crate::pair::Pair;
-use crate::real::Real;
+use crate::evaluator::vector::evaluate_all;
+use crate::numeric::Real;
 use crate::scene::Domain;
 
 /// A table of f_r over incidence and view in the plane of incidence. Its coordinates are
@@ -73,7 +74,7 @@ struct Coordinates {
 impl Formula<2> for Coordinates {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 2] {
+    fn at<R: Real>(&self, pair: &DirectionPair<R>) -> [R; 2] {
         let (one, cosine) = (R::of(1.0), pair.cos_psi);
         // tan^2(psi/2) = (1 - cos psi)/(1 + cos psi).
         let tan_half = ((one - cosine).abs() / (one + cosine)).sqrt();

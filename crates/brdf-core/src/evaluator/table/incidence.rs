@@ -5,10 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::lattice::{Lattice, Wanted};
 use super::{Table, TableError, signed_tilt, tilt_at, value_in_plane, view_at};
 use crate::AnyBrdf;
+use crate::direction_pair::DirectionPair;
 use crate::evaluator::Points;
-use crate::evaluator::vector::{Formula, evaluate};
-use crate::pair::Pair;
-use crate::real::Real;
+use crate::evaluator::formula::Formula;
+use crate::evaluator::vector::evaluate;
+use crate::numeric::Real;
 use crate::scene::Domain;
 
 /// A table of f_r over the signed view angle in the plane of incidence, for one incidence angle: a
@@ -64,7 +65,7 @@ struct Coordinate {
 impl Formula for Coordinate {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
+    fn at<R: Real>(&self, pair: &DirectionPair<R>) -> [R; 1] {
         [signed_tilt(pair, self.reciprocal_width)]
     }
 }

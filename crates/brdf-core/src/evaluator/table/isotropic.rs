@@ -8,13 +8,14 @@ use super::lattice::{Lattice, Wanted};
 use super::{Table, TableError};
 use crate::AnyBrdf;
 use crate::brdf::MicrofacetBrdf;
+use crate::direction_pair::DirectionPair;
 use crate::evaluator::Points;
+use crate::evaluator::formula::Formula;
 use crate::evaluator::points::BLOCK;
-use crate::evaluator::vector::{Formula, evaluate_all};
+use crate::evaluator::vector::evaluate_all;
 use crate::facet::FacetDistribution;
 use crate::family::each;
-use crate::pair::Pair;
-use crate::real::Real;
+use crate::numeric::Real;
 use crate::scene::Domain;
 use crate::shadowing::Shadowing;
 
@@ -87,11 +88,11 @@ impl<S: Shadowing> Coordinates<S> {
 impl<S: Shadowing> Formula<3> for Coordinates<S> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 3] {
+    fn at<R: Real>(&self, pair: &DirectionPair<R>) -> [R; 3] {
         let half = &pair.half;
         let excess = half.tan2_alpha() * R::of(self.reciprocal_width2);
         let tilt = (R::of(1.0) + excess).ln();
-        let shadowing = self.shadowing.quotient(pair.cos_psi, pair.cos_theta, half);
+        let shadowing = self.shadowing.ratio(pair.cos_psi, pair.cos_theta, half);
         [tilt, half.length, pair.if_above_surface(shadowing.value())]
     }
 }

@@ -18,8 +18,8 @@ use std::fmt::Debug;
 use super::points::in_blocks;
 use super::vector::{native, rounded};
 use super::{Evaluator, LengthError, Points, Precision};
-use crate::pair::Pair;
-use crate::real::Real;
+use crate::direction_pair::DirectionPair;
+use crate::numeric::Real;
 use crate::{AnyBrdf, Geometry};
 
 /// Why a table cannot be made.
@@ -86,7 +86,7 @@ impl<T: Table + Debug + Send + Sync> Evaluator for T {
 /// it.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "as all that is vector code")]
-fn signed_tilt<R: Real>(pair: &Pair<R>, reciprocal_width: f64) -> R {
+fn signed_tilt<R: Real>(pair: &DirectionPair<R>, reciprocal_width: f64) -> R {
     let half = &pair.half;
     let t = half.across2.sqrt() / half.along * R::of(reciprocal_width);
     let tilt = (t + t.mul_add(t, R::of(1.0)).sqrt()).ln();

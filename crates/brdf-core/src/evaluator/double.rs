@@ -1,24 +1,18 @@
-//! The model itself, in `f64`.
+//! The model in `f64`.
 
-use super::vector::{Formula, evaluate, grid, native, rounded};
-use super::{Evaluator, LengthError, Points, Precision};
-use crate::AnyBrdf;
-use crate::brdf::MicrofacetBrdf;
-use crate::facet::FacetDistribution;
-use crate::family::each;
-use crate::fresnel::FresnelFactor;
-use crate::pair::Pair;
-use crate::real::Real;
-use crate::shadowing::Shadowing;
+use super::interface::{Evaluator, Precision};
+use super::points::{LengthError, Points, check_grid};
+use super::vector::{evaluate, grid, native, rounded};
+use crate::family::{AnyBrdf, each};
 
 /// The model as it is, in `f64`, at many points: the formula of
 /// [`MicrofacetBrdf::value`](crate::MicrofacetBrdf::value), with another order of roundings.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Exact {
+pub struct Double {
     brdf: AnyBrdf,
 }
 
-impl Exact {
+impl Double {
     /// An evaluator of the BRDF.
     pub fn new(brdf: AnyBrdf) -> Self {
         Self { brdf }
@@ -42,24 +36,7 @@ impl Exact {
     }
 }
 
-/// Checks the lengths of the arrays of a grid.
-pub(super) fn check_grid(
-    psi: usize,
-    theta: usize,
-    phi: usize,
-    out: usize,
-) -> Result<(), LengthError> {
-    let lengths = [(theta, phi), (psi * theta, out)];
-    match lengths
-        .into_iter()
-        .find(|(expected, found)| expected != found)
-    {
-        Some((expected, found)) => Err(LengthError { expected, found }),
-        None => Ok(()),
-    }
-}
-
-impl Evaluator for Exact {
+impl Evaluator for Double {
     fn name(&self) -> &'static str {
         "exact"
     }
@@ -76,16 +53,5 @@ impl Evaluator for Exact {
         each!(&self.brdf, brdf => {
             rounded(points, out, |points: &Points<f64>, out| evaluate(*brdf, points, out))
         })
-    }
-}
-
-impl<F: FacetDistribution, S: Shadowing> Formula for MicrofacetBrdf<F, S> {
-    #[inline(always)]
-    #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
-        let half = &pair.half;
-        let fresnel = self.fresnel().quotient(half.length, half.length2);
-        let value = self.with_fresnel(fresnel, pair.cos_psi, pair.cos_theta, half);
-        [pair.if_above_surface(value)]
     }
 }

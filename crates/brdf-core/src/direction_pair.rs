@@ -5,8 +5,8 @@
     reason = "a call costs a tenth of an evaluation, and is no vector code"
 )]
 
-use crate::real::Real;
-use crate::trigonometry::{sin_cos_quarter, sin_eighth, sin2_cos2_of_half};
+use crate::numeric::Real;
+use crate::numeric::{sin_cos_quarter, sin_eighth, sin2_cos2_of_half};
 
 /// A vector half way between source and view, of any length: what the distribution of facet normals
 /// depends on. alpha is its angle with the surface normal.
@@ -25,7 +25,7 @@ pub struct HalfVector<R> {
 impl HalfVector<f64> {
     /// The vector with a part of 1 along the normal: from tan^2 alpha and sec alpha.
     #[inline(always)]
-    pub fn of_tilt(tan2_alpha: f64, sec_alpha: f64) -> Self {
+    pub fn from_tilt(tan2_alpha: f64, sec_alpha: f64) -> Self {
         Self {
             across2: tan2_alpha,
             along: 1.0,
@@ -45,7 +45,7 @@ impl<R: Real> HalfVector<R> {
 
 /// Source and view.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pair<R> {
+pub(crate) struct DirectionPair<R> {
     /// cos psi of the source.
     pub(crate) cos_psi: R,
     /// cos theta of the view.
@@ -82,7 +82,7 @@ impl<R: Real> Zenith<R> {
     }
 }
 
-impl<R: Real> Pair<R> {
+impl<R: Real> DirectionPair<R> {
     /// A value of these directions, NaN where one of them is not above the surface.
     #[inline(always)]
     pub(crate) fn if_above_surface(&self, value: R) -> R {
@@ -92,7 +92,7 @@ impl<R: Real> Pair<R> {
 
     /// From the parts of (source + view)/2, the square of that across the normal.
     #[inline(always)]
-    pub(crate) fn of_half(cos_psi: R, cos_theta: R, across2: R, length2: R) -> Self {
+    pub(crate) fn from_half(cos_psi: R, cos_theta: R, across2: R, length2: R) -> Self {
         Self {
             cos_psi,
             cos_theta,
@@ -114,7 +114,7 @@ impl<R: Real> Pair<R> {
     /// ```
     #[inline(always)]
     pub(crate) fn from_zeniths(source: Zenith<R>, view: Zenith<R>, cos2_half_phi: R) -> Self {
-        let difference = TanDifference::of(source, view);
+        let difference = HalfDifference::of(source, view);
         Self::from_difference(source, view, difference, cos2_half_phi)
     }
 
@@ -123,13 +123,13 @@ impl<R: Real> Pair<R> {
     pub(crate) fn from_difference(
         source: Zenith<R>,
         view: Zenith<R>,
-        difference: TanDifference<R>,
+        difference: HalfDifference<R>,
         cos2_half_phi: R,
     ) -> Self {
         let h_z = source.cos + view.cos;
         let quarter_h_z2 = R::of(0.25) * (h_z * h_z);
         let out_of_plane = (source.sin * view.sin) * cos2_half_phi;
-        Self::of_half(
+        Self::from_half(
             source.cos,
             view.cos,
             quarter_h_z2.mul_add(difference.tan2, out_of_plane),
@@ -169,7 +169,7 @@ impl<R: Real> Pair<R> {
         let half_sines = R::of(0.5) * sines;
         let out_of_plane = half_sines * (one + cos_phi).abs();
         let across2 = product * product / sum2 + out_of_plane;
-        Self::of_half(cos_psi, cos_theta, across2, along.mul_add(along, across2))
+        Self::from_half(cos_psi, cos_theta, across2, along.mul_add(along, across2))
     }
 
     /// From unit vectors towards the source and towards the viewer, z along the normal.
@@ -188,18 +188,18 @@ impl<R: Real> Pair<R> {
         let across2 = half_x.mul_add(half_x, half_y * half_y);
         let cos_theta = scale.mul_add(view[2], view[2]);
         let along = R::of(0.5) * (source[2] + cos_theta);
-        Self::of_half(source[2], cos_theta, across2, along.mul_add(along, across2))
+        Self::from_half(source[2], cos_theta, across2, along.mul_add(along, across2))
     }
 }
 
 /// tan^2 and 1/cos^2 of (psi - theta)/2.
 #[derive(Clone, Copy)]
-pub(crate) struct TanDifference<R> {
+pub(crate) struct HalfDifference<R> {
     pub(crate) tan2: R,
     pub(crate) sec2: R,
 }
 
-impl<R: Real> TanDifference<R> {
+impl<R: Real> HalfDifference<R> {
     #[inline(always)]
     pub(crate) fn of(source: Zenith<R>, view: Zenith<R>) -> Self {
         let sin = sin_eighth(R::of(0.5) * (source.angle - view.angle));

@@ -1,4 +1,4 @@
-//! The three-parameter model, eq. (3) and (4).
+//! The three-parameter model of eq. (3) and (4), and models of the same form with other terms.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -10,17 +10,18 @@ use crate::numeric::{Ratio, Real};
 use crate::parameters::{ParameterError, Parameters, check_refractive_index};
 use crate::shadowing::{Shadowing, VGroove};
 
-/// A BRDF of facets and a Lambertian part, put together of a facet distribution, a shadowing
-/// function and the Fresnel factor:
+/// The BRDF of a facet distribution, a shadowing function, the Fresnel factor and a Lambertian part:
 ///
 /// ```text
 /// f_r = (k2/pi) f(alpha)/f(0) R0(gamma) G / (cos psi cos theta) + kD/pi      [1/sr]
 /// ```
 ///
 /// f(alpha)/f(0) is the [facet distribution](crate::facet), R0 the [Fresnel
-/// factor](crate::fresnel::Dielectric::relative), G the [shadowing](crate::shadowing). The function
-/// is reciprocal, to the last bit. Which terms they are is known when the program is compiled, so
-/// that the choice costs nothing in a loop; [`AnyBrdf`](crate::AnyBrdf) chooses at run time.
+/// factor](crate::fresnel::Dielectric::relative) and G the [shadowing](crate::shadowing). The
+/// function is reciprocal to the last bit.
+///
+/// The terms are chosen at compile time, so that the choice costs nothing in a loop;
+/// [`AnyBrdf`](crate::AnyBrdf) chooses at run time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MicrofacetBrdf<F, S> {
     k2: f64,
@@ -44,21 +45,27 @@ pub struct MicrofacetBrdf<F, S> {
 pub type ThreeParameterBrdf = MicrofacetBrdf<Ellipsoid, VGroove>;
 
 impl ThreeParameterBrdf {
-    /// The model of the parameters at the refractive index n in [`N_DOMAIN`].
+    /// The model with the given parameters and the refractive index n in
+    /// [`N_DOMAIN`](crate::N_DOMAIN), relative to air.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] for a parameter outside its domain.
     pub fn new(parameters: Parameters, n: f64) -> Result<Self, ParameterError> {
         Self::from_terms(parameters, n, Ellipsoid::new, |_| VGroove)
     }
 }
 
 impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
-    /// The model of the parameters at the refractive index n, with the terms of the width k1.
+    /// The model with the given parameters and refractive index n. The terms are functions of the
+    /// width k1.
     pub(crate) fn from_terms(
         parameters: Parameters,
         n: f64,
         facet: impl FnOnce(f64) -> F,
         shadowing: impl FnOnce(f64) -> S,
     ) -> Result<Self, ParameterError> {
-        // The fields are public: what was changed by hand is checked again.
+        // The fields are public and may have been changed since they were checked.
         let Parameters { k2, kd, k1 } =
             Parameters::new(parameters.k2, parameters.kd, parameters.k1)?;
         Ok(Self {
@@ -84,7 +91,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         self.fresnel.n()
     }
 
-    /// f_r in 1/sr.
+    /// f_r in 1/sr, eq. (4).
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
@@ -92,8 +99,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         self.with_fresnel(fresnel, psi, theta, &geometry.half())
     }
 
-    /// The formula itself, in any kind of number, with the value of any form of the Fresnel factor:
-    /// one division.
+    /// f_r in any kind of number, with any form of the Fresnel factor, by one division.
     #[inline]
     pub(crate) fn with_fresnel<R: Real>(
         &self,
@@ -108,7 +114,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         specular.mul_add(R::of(self.k2 * FRAC_1_PI), R::of(self.kd * FRAC_1_PI))
     }
 
-    /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
+    /// The derivatives of f_r with respect to (k2, kD, k1), in 1/sr.
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
         let (t, sec) = (geometry.tan2_alpha, geometry.sec_alpha);
@@ -123,7 +129,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         [facet * (shadowing * fresnel), FRAC_1_PI, self.k2 * by_k1]
     }
 
-    /// The derivative of f_r by the refractive index n, in 1/sr per unit.
+    /// The derivative of f_r with respect to the refractive index n, in 1/sr.
     #[inline]
     pub fn derivative_n(&self, geometry: &Geometry) -> f64 {
         let fresnel_slope = self
@@ -136,7 +142,8 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self.shadowing.over_cosines_at(geometry)
     }
 
-    /// The derivative of f_r by the exponent p, in 1/sr per unit; 0 for a distribution without one.
+    /// The derivative of f_r with respect to the exponent p, in 1/sr; 0 for a distribution without
+    /// one.
     #[inline]
     pub fn derivative_p(&self, geometry: &Geometry) -> f64 {
         FRAC_1_PI
@@ -148,16 +155,10 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self.shadowing.over_cosines_at(geometry)
     }
 
-    /// Scattered radiant intensity for unit flux, eq. (3): K = f_r cos theta, in 1/sr.
+    /// The scattered radiant intensity for unit flux, K = f_r cos theta in 1/sr, eq. (3).
     #[inline]
     pub fn radiant_intensity(&self, geometry: &Geometry) -> f64 {
         self.value(geometry) * geometry.cos_theta
-    }
-
-    /// The specular part without its shadowing, (k2/pi) f(alpha)/f(0) R0(gamma).
-    pub(crate) fn unshadowed(&self, tan2_alpha: f64, cos_gamma: f64) -> f64 {
-        let facet = self.facet.relative(tan2_alpha, (1.0 + tan2_alpha).sqrt());
-        self.k2 * FRAC_1_PI * facet * self.fresnel.relative(cos_gamma)
     }
 
     pub(crate) fn facet(&self) -> F {
@@ -177,8 +178,9 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     }
 }
 
-/// What of the paper's specular part depends on n and the geometry alone:
-/// R0(gamma) G / (cos psi cos theta).
+/// The factor R0(gamma) G / (cos psi cos theta) of the paper's specular part, dimensionless.
+///
+/// It depends on n and the geometry alone, and is the whole specular part for k2 = pi at alpha = 0.
 #[inline]
 pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
     fresnel.ratio_at(geometry).value() * VGroove.over_cosines_at(geometry)
@@ -196,7 +198,7 @@ mod tests {
         ThreeParameterBrdf::new(Parameters::new(k2, kd, k1).unwrap(), n).unwrap()
     }
 
-    /// Parameters over the model's whole domain of k1 and n, and usual weights.
+    /// Models over the whole domain of k1 and n with usual weights.
     fn any_brdf() -> impl Strategy<Value = ThreeParameterBrdf> {
         (1e-4..10.0, 0.0..1.0, -18.4..18.4_f64, -16.0..11.5_f64)
             .prop_map(|(k2, kd, log_k1, log_n)| brdf(k2, kd, log_k1.exp(), 1.0 + log_n.exp()))
@@ -216,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn the_radiant_intensity_carries_the_view_cosine() {
+    fn the_radiant_intensity_contains_the_view_cosine() {
         let brdf = brdf(0.3, 0.2, 0.15, 1.5);
         let geometry = Geometry::in_plane(0.3, 0.5).unwrap();
         let expected = brdf.value(&geometry) * 0.5_f64.cos();
@@ -274,7 +276,7 @@ mod tests {
         }
 
         #[test]
-        fn gradient_is_that_of_the_value(
+        fn the_gradient_is_the_derivative_of_the_value(
             k2 in 0.01..3.0, kd in 0.01..1.0, log_k1 in -4.0..2.0_f64, n in 1.1..4.0,
             psi in 0.0..1.5, theta in -1.5..1.5,
         ) {

@@ -1,7 +1,5 @@
 //! The parameters of the models and their domains.
 
-use serde::{Deserialize, Serialize};
-
 /// The smallest and the largest width k1 of the model's domain, dimensionless.
 pub const K1_DOMAIN: (f64, f64) = (1e-8, 1e8);
 
@@ -15,8 +13,9 @@ pub const N_DOMAIN: (f64, f64) = (1.0, 1e5);
 pub const P_DOMAIN: (f64, f64) = (0.1, 16.0);
 
 /// The three parameters of the model, in the paper's order.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "RawParameters")]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawParameters"))]
 pub struct Parameters {
     /// Specular weight k2 = (pi/4) f(0) R(0) >= 0, dimensionless.
     pub k2: f64,
@@ -49,13 +48,15 @@ pub enum ParameterError {
 }
 
 /// The parameters as a file contains them, before they are checked.
-#[derive(Deserialize)]
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
 struct RawParameters {
     k2: f64,
     kd: f64,
     k1: f64,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<RawParameters> for Parameters {
     type Error = ParameterError;
 
@@ -110,7 +111,8 @@ pub(crate) fn check_exponent(p: f64) -> Result<f64, ParameterError> {
 /// All parameters that a model of any family has, in the order (k2, kD, k1, n, p).
 ///
 /// They are checked when a model is made of them.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ModelParameters {
     /// Specular weight k2 >= 0, dimensionless.
     pub k2: f64,

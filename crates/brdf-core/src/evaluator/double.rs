@@ -5,8 +5,10 @@ use super::points::{LengthError, Points, check_grid};
 use super::vector::{evaluate, grid, native, rounded};
 use crate::family::{AnyBrdf, each};
 
-/// The model as it is, in `f64`, at many points: the formula of
-/// [`MicrofacetBrdf::value`](crate::MicrofacetBrdf::value), with another order of roundings.
+/// The model in `f64` at many points.
+///
+/// It is the formula of [`MicrofacetBrdf::value`](crate::MicrofacetBrdf::value) with another order of
+/// roundings, from which it differs by a few units of the last place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Double {
     brdf: AnyBrdf,
@@ -18,11 +20,16 @@ impl Double {
         Self { brdf }
     }
 
-    /// f_r at every view for each incidence, angles in radians, theta signed, phi one for each theta:
-    /// out has all views of the first incidence, then all of the second. Costs less than as many
-    /// single points, since the sines and cosines are worked out once.
+    /// f_r in 1/sr at every view for each incidence, with the incidences psi, the signed view angles
+    /// theta and one azimuth phi for each theta, all in radians.
     ///
-    /// Errors: theta and phi of different lengths, or out not of the length of psi times theirs.
+    /// `out` has the length of psi times that of theta and contains all views of the first incidence,
+    /// then all of the second. Its values are NaN outside the domain. A grid takes less time than as
+    /// many single points, because the sines and cosines are computed once.
+    ///
+    /// # Errors
+    ///
+    /// [`LengthError`] if theta and phi, or `out` and the grid, have different lengths.
     pub fn grid(
         &self,
         psi: &[f64],
@@ -38,7 +45,7 @@ impl Double {
 
 impl Evaluator for Double {
     fn name(&self) -> &'static str {
-        "exact"
+        "f64"
     }
 
     fn precision(&self) -> Precision {

@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use super::points::{LengthError, Points};
 
-/// The numbers that an evaluator works in; arrays of those it takes without a conversion.
+/// The numbers that an evaluator computes in. It accepts arrays of them without a conversion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// `f64`.
@@ -13,33 +13,32 @@ pub enum Precision {
     Single,
 }
 
-/// A way to evaluate one BRDF, f_r in 1/sr.
+/// A way to evaluate f_r of one BRDF in 1/sr.
 ///
-/// Where the points or the values are of another precision than the evaluator works in, they are
-/// rounded: the value is that of the rounded point.
+/// Points and values of another precision than the evaluator's are rounded: the value is that at the
+/// rounded point.
 pub trait Evaluator: Debug + Send + Sync {
-    /// What it is called.
+    /// The name of the evaluator.
     fn name(&self) -> &'static str;
 
-    /// The numbers that it works in.
+    /// The numbers that it computes in.
     fn precision(&self) -> Precision;
 
-    /// The memory that it needs beside its parameters, in bytes.
-    fn bytes(&self) -> usize {
-        0
-    }
-
-    /// f_r at each of the points.
+    /// f_r in 1/sr at each of the points; NaN outside the domain.
     ///
-    /// Errors: arrays of different lengths.
+    /// # Errors
+    ///
+    /// [`LengthError`] if the arrays have different lengths.
     fn values(&self, points: &Points<f64>, out: &mut [f64]) -> Result<(), LengthError>;
 
-    /// f_r at each of the points, in arrays of `f32`.
+    /// [`values`](Self::values) with arrays of `f32`.
     ///
-    /// Errors: arrays of different lengths.
+    /// # Errors
+    ///
+    /// [`LengthError`] if the arrays have different lengths.
     fn values_f32(&self, points: &Points<f32>, out: &mut [f32]) -> Result<(), LengthError>;
 
-    /// f_r at one point, psi, signed theta and phi in radians; NaN outside the domain.
+    /// f_r in 1/sr at psi, signed theta and phi, in radians; NaN outside the domain.
     fn value(&self, psi: f64, theta: f64, phi: f64) -> f64 {
         let mut out = [f64::NAN];
         let point = Points::Angles {
@@ -47,7 +46,7 @@ pub trait Evaluator: Debug + Send + Sync {
             theta: &[theta],
             phi: &[phi],
         };
-        // The arrays have one element each.
+        // All arrays have one element, so that there is no error.
         let _ = self.values(&point, &mut out);
         out[0]
     }

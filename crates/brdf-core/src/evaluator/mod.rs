@@ -1,22 +1,34 @@
-//! Many points at once: ways to evaluate a BRDF that differ in speed, accuracy and memory, behind
-//! one interface.
+//! The evaluation of many points at once, by evaluators that differ in speed and accuracy and share one
+//! interface, [`Evaluator`].
 //!
-//! | evaluator | arithmetic | memory | for |
-//! |---|---|---|---|
-//! | [`Double`] | `f64` | none | all, and the measure of the others |
-//! | [`Single`] | `f32` | none | what a renderer wants |
-//! | [`FittedFresnel`] | `f32`, the Fresnel factor a polynomial in cos gamma with a known error | none | the same, a little faster |
-//! | [`Lambertian`] | a constant | none | a surface, or a range of angles, without a specular part to speak of |
-//! | [`SpecularOnly`] | `f32` without the Lambertian part | none | where that is not to be seen |
-//! | [`IsotropicTable`] | `f32`, a table over alpha and gamma | some KiB | processors whose divisions and roots are slow |
-//! | [`IncidenceTable`] | `f32`, a table over signed theta | some KiB | one incidence, in plane |
-//! | [`InPlaneTable`] | `f32`, a table over psi and signed theta | MiB | in plane |
+//! | evaluator | arithmetic | use |
+//! |---|---|---|
+//! | [`Double`] | `f64` | any |
+//! | [`Single`] | `f32` | rendering |
+//! | [`FittedFresnel`] | `f32`, with a polynomial of known error as the Fresnel factor | rendering, slightly faster |
+//! | [`Lambertian`] | constant | surfaces, or ranges of angles, with a negligible specular part |
+//! | [`SpecularOnly`] | `f32`, without the Lambertian part | surfaces with a negligible Lambertian part |
 //!
-//! What they cost, and how they err for a scene, is measured by [`Plan`](crate::scene::Plan), and by
-//! the command `trade`. [`Double`] differs from single values by a few roundings. The largest relative
-//! errors of [`Single`], from cosines, for k2 = 0.3, kD = 0.1, n = 1.5 and p = 1.7, among 100,000
-//! points half of which lie next to the mirror direction or at the ends of the ranges
-//! (`cargo test -p brdf-core --test evaluators -- --nocapture errors_in_f32` prints more of them):
+//! ```
+//! use brdf_core::evaluator::{Double, Evaluator as _, Points};
+//! use brdf_core::{Parameters, ThreeParameterBrdf};
+//!
+//! let brdf = ThreeParameterBrdf::new(Parameters::new(1.211, 0.521, 0.071)?, 1.60)?;
+//! let points = Points::Angles {
+//!     psi: &[0.3, 0.3],
+//!     theta: &[-0.3, -0.4],
+//!     phi: &[0.0, 0.0],
+//! };
+//! let mut f_r = [0.0; 2];
+//! Double::new(brdf.into()).values(&points, &mut f_r)?;
+//! # assert!(f_r[0] > f_r[1]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Their time and their errors for a scene are measured by [`Plan`](crate::scene::Plan). The values of
+//! [`Double`] differ from single values by a few roundings. The largest relative errors of [`Single`],
+//! from cosines, for k2 = 0.3, kD = 0.1, n = 1.5 and p = 1.7, among 100,000 points half of which are
+//! next to the mirror direction or at the ends of the ranges, are
 //!
 //! | angles up to | k1 | paper | Smith | power | GGX | Beckmann |
 //! |---|---|---|---|---|---|---|
@@ -26,9 +38,11 @@
 //! | 85 deg | 1 | 5.9e-7 | 5.7e-7 | 5.9e-7 | 6.6e-7 | 1.3e-6 |
 //! | 89.9 deg | 0.01 | 5.0e-7 | 5.6e-7 | 1.0e-6 | 6.3e-7 | 1.2e-6 |
 //!
-//! They are those of the evaluation, at the points as they are given: that a coordinate was rounded
-//! to `f32` before is not in them, and no evaluator can mend it. (The cosine of an azimuth next to
-//! pi, in `f32`, is good to 3e-4 rad: for narrow lobes, directions or angles are better.)
+//! (`cargo test -p brdf-core --release --test evaluators -- --nocapture errors_in_f32` prints more of
+//! them.) These are the errors of the evaluation at the points as they are given. They do not include
+//! the effect of rounding a coordinate to `f32` beforehand, which no evaluator can undo: the cosine of
+//! an azimuth next to pi in `f32` determines it to 3e-4 rad, so that directions or angles are better
+//! for narrow lobes.
 
 mod double;
 mod fitted_fresnel;
@@ -36,8 +50,8 @@ mod formula;
 mod interface;
 mod lambertian;
 mod points;
+mod processor;
 mod single;
-mod table;
 mod vector;
 
 pub use double::Double;
@@ -45,6 +59,6 @@ pub use fitted_fresnel::FittedFresnel;
 pub use interface::{Evaluator, Precision};
 pub use lambertian::Lambertian;
 pub use points::{LengthError, Points};
+pub use processor::vector_unit;
 pub use single::{Single, SpecularOnly};
-pub use table::{InPlaneTable, IncidenceTable, IsotropicTable, TableError};
-pub use vector::{PARALLEL_FROM, vector_unit};
+pub use vector::PARALLEL_FROM;

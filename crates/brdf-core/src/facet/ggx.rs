@@ -6,15 +6,15 @@ use super::distribution::FacetDistribution;
 use crate::direction_pair::HalfVector;
 use crate::numeric::{Ratio, Real};
 
-/// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33),
-/// its roughness alpha_g being the width k1:
+/// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33).
+/// The width k1 is its roughness alpha_g:
 ///
 /// ```text
 /// f(alpha) / f(0) = (k1^2 / (sin^2 alpha + k1^2 cos^2 alpha))^2
 ///                 = (k1^2 sec^2 alpha / (tan^2 alpha + k1^2))^2,   f(0) = 1 / (pi k1^2)
 /// ```
 ///
-/// Not the paper's: eq. (2) has the first power, and cos alpha on top.
+/// The paper's eq. (2) differs from it by the first power and the factor cos alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ggx {
     k1: f64,
@@ -22,7 +22,7 @@ pub struct Ggx {
 }
 
 impl Ggx {
-    /// The distribution of width k1 > 0, which is not checked here.
+    /// The distribution of width k1 > 0, which is not checked.
     pub fn new(k1: f64) -> Self {
         Self {
             k1,

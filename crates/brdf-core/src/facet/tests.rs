@@ -9,7 +9,7 @@ use crate::numeric::integrate;
 
 const LAWS: [&str; 4] = ["ellipsoid", "power", "ggx", "beckmann"];
 
-/// Value, derivative by k1, derivative by p, peak density.
+/// The value, its derivatives with respect to k1 and p, and the peak density.
 fn evaluate(law: &str, k1: f64, p: f64, alpha: f64) -> [f64; 4] {
     fn all(facet: impl FacetDistribution, alpha: f64) -> [f64; 4] {
         let (t, sec) = (alpha.tan().powi(2), 1.0 / alpha.cos());
@@ -38,8 +38,8 @@ fn drawn(law: &str, k1: f64, p: f64, u: f64) -> f64 {
     }
 }
 
-/// The fraction of the facet normals that are drawn with a tilt between two, given by
-/// tan^2 alpha, by quadrature in v, tan alpha = w sinh v.
+/// The fraction of the facet normals that are drawn with tan^2 alpha between two values, by quadrature
+/// in v with tan alpha = w sinh v.
 fn fraction_between(law: &str, k1: f64, p: f64, tan2_alpha: [f64; 2]) -> f64 {
     fn of(facet: impl FacetDistribution, [from, to]: [f64; 2]) -> f64 {
         let width = facet.k1().min(1.0);
@@ -63,7 +63,7 @@ fn fraction_between(law: &str, k1: f64, p: f64, tan2_alpha: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn the_limits_of_the_drawn_tilts_have_no_step() {
+fn drawn_tilts_are_continuous_at_their_limits() {
     for u in [1e-6, 0.3, 0.999_999] {
         for (k1, p, beside) in [(0.3, 1.0, 1e-9), (1.0, 1.0, 1e-9), (1.0, 3.0, 1e-9)] {
             let at = |k1, p| drawn("power", k1, p, u);

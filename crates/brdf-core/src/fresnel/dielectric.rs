@@ -4,18 +4,19 @@ use super::factor::FresnelFactor;
 use crate::geometry::Geometry;
 use crate::numeric::{Ratio, Real};
 
-/// Unpolarised Fresnel reflectance of a facet of refractive index n (real, relative to air).
+/// The unpolarised Fresnel reflectance of a facet with the real refractive index n relative to air.
 ///
-/// With c = cos gamma and g = sqrt((n-1)(n+1) + c^2) the Fresnel equations read
+/// With c = cos gamma and g = sqrt((n-1)(n+1) + c^2) the Fresnel equations are
 ///
 /// ```text
 /// R(gamma)  = 1/2 ((g - c)/(g + c))^2 (1 + b^2),   b = (c (g + c) - 1) / (c (g - c) + 1)
 /// R0(gamma) = R(gamma) / R(0) = 1/2 ((n + 1)/(g + c))^4 (1 + b^2)
 /// ```
 ///
-/// where (g - c)/(g + c) = (n^2-1)/(g + c)^2 was divided by (n-1)/(n+1): nothing cancels, and
-/// n = 1 has its limit instead of 0/0. R0 is 1 at gamma = 0 and goes to 1/R(0) at grazing.
-/// Since the fourth power multiplies rounding errors by four, (g + c)^2 is evaluated as
+/// where (g - c)/(g + c) = (n^2-1)/(g + c)^2 is divided by (n-1)/(n+1). No term cancels, and n = 1
+/// gives the limit instead of 0/0. R0 is 1 at gamma = 0 and approaches 1/R(0) at grazing.
+///
+/// Because the fourth power multiplies rounding errors by four, (g + c)^2 is evaluated as
 /// n^2 - 1 + 2 c (g + c), which has fewer of them, and n^2 - 1 is rounded once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dielectric {
@@ -26,9 +27,9 @@ pub struct Dielectric {
 }
 
 impl Dielectric {
-    /// A facet of refractive index n >= 1.
+    /// A facet of refractive index n >= 1, which is not checked.
     ///
-    /// n is not checked here; [`ThreeParameterBrdf::new`](crate::ThreeParameterBrdf::new) does that.
+    /// [`ThreeParameterBrdf::new`](crate::ThreeParameterBrdf::new) checks it.
     pub fn new(n: f64) -> Self {
         let n_plus_1_squared = n.mul_add(n, 2.0 * n + 1.0);
         Self {
@@ -43,34 +44,34 @@ impl Dielectric {
         self.n
     }
 
-    /// R(0) = ((n-1)/(n+1))^2, the reflectance at normal incidence on the facet.
+    /// R(0) = ((n-1)/(n+1))^2, the reflectance at normal incidence on the facet, dimensionless.
     pub fn normal_reflectance(&self) -> f64 {
         ((self.n - 1.0) / (self.n + 1.0)).powi(2)
     }
 
-    /// R(gamma) in [0, 1], for cos gamma in (0, 1].
+    /// R(gamma) in [0, 1] for cos gamma in (0, 1], dimensionless.
     pub fn reflectance(&self, cos_gamma: f64) -> f64 {
         let terms = self.terms(cos_gamma, cos_gamma * cos_gamma);
         let ratio = self.n2_minus_1 / terms.square;
         0.5 * ratio * ratio * (1.0 + (terms.numerator / terms.denominator).powi(2))
     }
 
-    /// R0(gamma) = R(gamma)/R(0), for cos gamma in (0, 1].
+    /// R0(gamma) = R(gamma)/R(0) for cos gamma in (0, 1], dimensionless.
     pub fn relative(&self, cos_gamma: f64) -> f64 {
         self.ratio(cos_gamma, cos_gamma * cos_gamma).value()
     }
 
-    /// R0(gamma) of a geometry, which has the square beside the cosine: the roots of both then run
-    /// side by side.
+    /// R0(gamma) of a geometry, which contains the square of the cosine too: its root and that of the
+    /// Fresnel equations then do not depend on each other.
     #[inline]
     pub fn ratio_at(&self, geometry: &Geometry) -> Ratio<f64> {
         self.ratio(geometry.cos_gamma, geometry.cos2_gamma)
     }
 
-    /// The derivative of R0(gamma) by n, for cos gamma in (0, 1] and sin^2 gamma with it.
+    /// The derivative of R0(gamma) with respect to n, for cos gamma in (0, 1] and its sin^2 gamma.
     ///
-    /// R0 is 1 at gamma = 0 for any n, so the derivative carries the factor sin^2 gamma, which
-    /// cannot be had from cos gamma without a loss of digits.
+    /// R0 is 1 at gamma = 0 for any n, so that the derivative has the factor sin^2 gamma, which
+    /// cos gamma alone does not determine accurately.
     pub fn relative_derivative_n(&self, cos_gamma: f64, sin2_gamma: f64) -> f64 {
         let (n, c) = (self.n, cos_gamma);
         let Terms {
@@ -121,15 +122,15 @@ impl FresnelFactor for Dielectric {
     }
 }
 
-/// The terms of the formula above, c being cos gamma.
+/// The terms of the formula of [`Dielectric`], with c = cos gamma.
 struct Terms<R> {
     /// g + c.
     sum: R,
     /// (g + c)^2 = n^2 - 1 + 2 c (g + c).
     square: R,
-    /// The numerator of b times g + c: c (g + c)^2 - (g + c).
+    /// The numerator of b multiplied by g + c: c (g + c)^2 - (g + c).
     numerator: R,
-    /// The denominator of b times g + c: c (n^2 - 1) + g + c.
+    /// The denominator of b multiplied by g + c: c (n^2 - 1) + g + c.
     denominator: R,
 }
 
@@ -139,7 +140,7 @@ mod tests {
 
     use super::*;
 
-    /// The two polarisations by Snell's law, as a textbook has them.
+    /// The two polarisations by Snell's law, as in a textbook.
     fn textbook(n: f64, gamma: f64) -> f64 {
         let (c, t) = (gamma.cos(), (gamma.sin() / n).asin().cos());
         let s = (c - n * t) / (c + n * t);
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn equals_the_textbook_where_that_is_accurate() {
+    fn equals_the_textbook_formula_where_that_is_accurate() {
         for n in [1.2, 1.5, 4.0] {
             for gamma in [0.0, 0.5, 1.0, 1.5_f64] {
                 let value = Dielectric::new(n).reflectance(gamma.cos());
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn brewster_angle_halves_the_reflectance_to_one_polarisation() {
+    fn one_polarisation_is_left_at_the_brewster_angle() {
         let n = 1.5_f64;
         let gamma = n.atan();
         let s = (n * n - 1.0) / (n * n + 1.0);

@@ -1,4 +1,4 @@
-//! What a scene requires, and the cheapest evaluator that gives it.
+//! The fastest evaluator of a BRDF that meets the requirements of a scene, by measurement.
 //!
 //! ```
 //! use brdf_core::evaluator::{Evaluator as _, Points};
@@ -32,6 +32,5 @@ mod requirements;
 pub use cost::{TIMED, cost, cost_of_single_values};
 pub use domain::{Azimuth, Domain, DomainError};
 pub use plan::{Candidate, Plan, PlanError, Refusal, Survey};
-pub(crate) use probe::worst_error;
 pub use probe::{Errors, Probe};
 pub use requirements::{Coordinates, Scene};

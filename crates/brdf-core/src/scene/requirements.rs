@@ -1,45 +1,43 @@
-//! What a scene requires of the evaluation of a BRDF.
-
-use serde::{Deserialize, Serialize};
+//! The requirements of a scene.
 
 use super::domain::Domain;
 
-/// The coordinates in which a scene gives its points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+/// The coordinates in which the points of a scene are given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Coordinates {
     /// Cosines of psi, theta and phi.
     #[default]
     Cosines,
     /// psi, signed theta and phi in radians.
     Angles,
-    /// Unit vectors.
+    /// Unit vectors towards the source and towards the viewer.
     Directions,
 }
 
-/// What a scene requires of a BRDF.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// The requirements of a scene on the evaluation of a BRDF.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Scene {
     /// The directions that occur.
     pub domain: Domain,
-    /// The coordinates that they come in.
+    /// The coordinates in which they are given.
     pub coordinates: Coordinates,
-    /// The largest relative error of f_r, at the points as they come.
+    /// The largest relative error of f_r at the points as they are given, without the rounding of
+    /// their coordinates.
     pub tolerance: f64,
-    /// The largest memory of a table, in bytes.
-    pub memory_limit: usize,
-    /// How many evaluations there will be: what a table costs to be made is divided by it.
+    /// The number of evaluations, over which the time of making an evaluator is distributed.
     pub evaluations: f64,
 }
 
-/// All directions up to 85 deg, to 1e-3, 1e8 times, within 64 MiB.
+/// 1e8 evaluations in all directions up to 85 deg, to the relative tolerance 1e-3.
 impl Default for Scene {
     fn default() -> Self {
         Self {
             domain: Domain::default(),
             coordinates: Coordinates::default(),
             tolerance: 1e-3,
-            memory_limit: 64 << 20,
             evaluations: 1e8,
         }
     }

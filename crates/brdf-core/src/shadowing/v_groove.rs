@@ -4,13 +4,13 @@ use super::factor::Shadowing;
 use crate::direction_pair::HalfVector;
 use crate::numeric::{Ratio, Real};
 
-/// The V-groove factor of Torrance and Sparrow (JOSA 57, 1105, 1967), which the paper takes:
+/// The V-groove factor of Torrance and Sparrow (JOSA 57, 1105, 1967), which the paper uses:
 ///
 /// ```text
 /// G = min(1, 2 cos alpha cos theta / cos gamma, 2 cos alpha cos psi / cos gamma)
 /// ```
 ///
-/// With h the sum of the two unit vectors, 2 cos alpha / cos gamma = `h_z` / cos^2 gamma, and
+/// With the sum h of the two unit vectors, 2 cos alpha / cos gamma = `h_z` / cos^2 gamma and
 /// cos^2 gamma = (`h_z` / (2 cos alpha))^2, so that
 ///
 /// ```text
@@ -44,7 +44,7 @@ mod tests {
     use crate::Geometry;
 
     #[test]
-    fn nothing_is_hidden_in_the_mirror_direction() {
+    fn facets_are_unshadowed_in_the_mirror_direction() {
         for psi in [0.0, 0.6, 1.5] {
             let geometry = Geometry::in_plane(psi, -psi).unwrap();
             assert!((VGroove.factor(&geometry) - 1.0).abs() < 1e-15);

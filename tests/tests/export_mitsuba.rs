@@ -135,7 +135,7 @@ fn pairs(brdf: &AnyBrdf, count: usize, random: &mut StdRng) -> Vec<[[f64; 3]; 2]
         found.push([source, view]);
         let unit = Vector3::from(source).normalize();
         if let Some(sample) = sampler.sample(&unit, random.random()).unwrap() {
-            found.push([source, rounded(sample.direction.into())]);
+            found.push([source, rounded(sample.direction)]);
         }
     }
     found

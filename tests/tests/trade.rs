@@ -69,10 +69,7 @@ fn evaluators_are_measured_and_one_is_chosen() {
             number(e, "rms_relative_error") <= number(e, "max_relative_error"),
             "{name}"
         );
-        assert!(
-            number(e, "build_seconds") >= 0.0 && e["bytes"].is_u64(),
-            "{name}"
-        );
+        assert!(number(e, "build_seconds") >= 0.0, "{name}");
         assert!(e["ns_per_evaluation_all_threads"].is_number() || name == "value");
     }
     let choices: Vec<(f64, f64)> = evaluators
@@ -95,7 +92,7 @@ fn evaluators_are_measured_and_one_is_chosen() {
         .iter()
         .map(|e| e["name"].as_str().unwrap())
         .collect();
-    assert!(names.contains(&"table-in-plane") && names.contains(&"table-isotropic"));
+    assert!(names.contains(&"f64") && names.contains(&"f32"));
 
     let text = stdout(&output);
     assert!(
@@ -139,14 +136,17 @@ fn the_model_of_a_fit_is_measured() {
 
 #[test]
 fn a_tolerance_that_nothing_meets_is_status_one_with_the_best() {
-    let output = run(&["--tolerance", "1e-30", "--memory", "0.1"]);
+    let output = run(&["--tolerance", "1e-30"]);
     assert_eq!(output.status.code(), Some(1));
     let text = stdout(&output);
     assert!(
         text.contains("no plan: no evaluator is within the relative tolerance 1e-30"),
         "{text}"
     );
-    assert!(text.contains("the best, exact, errs by"), "{text}");
+    assert!(
+        text.contains("the most accurate, f64, has a maximum error of"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -1,19 +1,22 @@
-//! What an evaluation costs by each of the evaluators, as ratios within one run:
+//! The time of an evaluation by each of the evaluators. Compare times within one run:
 //! `cargo bench -p brdf-core --bench evaluators`.
 
-#![expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "rounds to the nearest `f32`"
+)]
 
 use std::hint::black_box;
 
-use brdf_core::evaluator::{Evaluator, Exact, FittedFresnel, Points, Single};
+use brdf_core::evaluator::{Double, Evaluator, FittedFresnel, Points, Single};
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Parameters};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use rayon::prelude::*;
 
-/// Points that stay in the nearest caches.
+/// The number of points whose arrays stay in the nearest caches.
 const POINTS: usize = 1024;
 
-/// Arrays of angles over the domain, so that no branch or cache learns one of them by heart.
+/// Arrays of angles over the domain without a pattern that a branch predictor could learn.
 fn angles(count: usize) -> [Vec<f64>; 3] {
     let sequence = |factor: f64, scale: f64| {
         (0..count)
@@ -35,7 +38,7 @@ fn brdf(family: Family) -> AnyBrdf {
 fn in_cache(c: &mut Criterion) {
     let brdf = brdf(Family::Paper);
     let AnyBrdf::Paper(paper) = brdf else {
-        unreachable!("the family asked for")
+        unreachable!("the requested family")
     };
     let [psi, theta, phi] = angles(POINTS);
     let cosines = [&psi, &theta, &phi].map(|a| a.iter().map(|x| x.cos()).collect::<Vec<_>>());
@@ -70,10 +73,10 @@ fn in_cache(c: &mut Criterion) {
         theta: &theta,
         phi: &phi,
     };
-    let exact = Exact::new(brdf);
+    let double = Double::new(brdf);
     for (name, points) in [("cosines", from_cosines), ("angles", from_angles)] {
         group.bench_function(format!("f64 batch from {name}"), |b| {
-            b.iter(|| exact.values(black_box(&points), &mut out));
+            b.iter(|| double.values(black_box(&points), &mut out));
         });
     }
     let narrow = |a: &Vec<f64>| a.iter().map(|&x| x as f32).collect::<Vec<f32>>();
@@ -125,9 +128,9 @@ fn families(c: &mut Criterion) {
     group.throughput(Throughput::Elements(POINTS as u64));
     for family in Family::ALL {
         let (mut out, mut out32) = (vec![0.0; POINTS], vec![0.0_f32; POINTS]);
-        let (exact, single) = (Exact::new(brdf(family)), Single::new(brdf(family)));
+        let (double, single) = (Double::new(brdf(family)), Single::new(brdf(family)));
         group.bench_function(format!("{family:?} f64"), |b| {
-            b.iter(|| exact.values(black_box(&points), &mut out));
+            b.iter(|| double.values(black_box(&points), &mut out));
         });
         group.bench_function(format!("{family:?} f32"), |b| {
             b.iter(|| single.values_f32(black_box(&points32), &mut out32));
@@ -136,7 +139,7 @@ fn families(c: &mut Criterion) {
     group.finish();
 }
 
-/// From which number of points on several cores pay: the same work as one piece and as many.
+/// The number of points from which on several threads are faster than one.
 fn break_even(c: &mut Criterion) {
     let [psi, theta, phi] =
         angles(1 << 16).map(|a| a.iter().map(|x| x.cos() as f32).collect::<Vec<_>>());
@@ -163,10 +166,10 @@ fn break_even(c: &mut Criterion) {
     group.finish();
 }
 
-/// Whether `f32` is as fast as the memory: against a triad over the same arrays, three in, one out.
+/// Compares `f32` with the memory, a triad over the same arrays: three are read and one is written.
 fn in_memory(c: &mut Criterion) {
     const MANY: usize = 16 << 20;
-    // Arrays that begin at the same place of a page get in each other's way: these do not.
+    // Arrays at the same offset in a page share cache sets. These have different offsets.
     const APART: usize = 272;
     let arrays =
         angles(MANY + 3 * APART).map(|a| a.iter().map(|x| x.cos() as f32).collect::<Vec<_>>());
@@ -192,13 +195,13 @@ fn in_memory(c: &mut Criterion) {
     group.finish();
 }
 
-/// out = a + b c, on all threads.
+/// Computes out = a + b c on all threads.
 fn triad([a, b, c]: [&[f32]; 3], out: &mut [f32]) {
-    const PIECE: usize = 1 << 20;
-    out.par_chunks_mut(PIECE)
+    const CHUNK: usize = 1 << 20;
+    out.par_chunks_mut(CHUNK)
         .enumerate()
-        .for_each(|(piece, out)| {
-            let range = piece * PIECE..piece * PIECE + out.len();
+        .for_each(|(chunk, out)| {
+            let range = chunk * CHUNK..chunk * CHUNK + out.len();
             let (a, b, c) = (&a[range.clone()], &b[range.clone()], &c[range]);
             for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
                 *out = a + b * c;
@@ -206,16 +209,16 @@ fn triad([a, b, c]: [&[f32]; 3], out: &mut [f32]) {
         });
 }
 
-/// A grid of views for each incidence, against as many single points.
+/// Compares a grid of views for each incidence with as many points of a batch.
 fn grid(c: &mut Criterion) {
     let [psi, theta, phi] = angles(POINTS);
     let psi = &psi[..16];
-    let exact = Exact::new(brdf(Family::Paper));
+    let double = Double::new(brdf(Family::Paper));
     let mut out = vec![0.0; psi.len() * POINTS];
     let mut group = c.benchmark_group("grid, 16 incidences, 1024 views");
     group.throughput(Throughput::Elements(out.len() as u64));
     group.bench_function("f64 grid", |b| {
-        b.iter(|| exact.grid(black_box(psi), &theta, &phi, &mut out));
+        b.iter(|| double.grid(black_box(psi), &theta, &phi, &mut out));
     });
     let repeated: Vec<f64> = psi.iter().flat_map(|&psi| vec![psi; POINTS]).collect();
     let (theta, phi) = (theta.repeat(psi.len()), phi.repeat(psi.len()));
@@ -225,7 +228,7 @@ fn grid(c: &mut Criterion) {
         phi: &phi,
     };
     group.bench_function("f64 batch from angles", |b| {
-        b.iter(|| exact.values(black_box(&points), &mut out));
+        b.iter(|| double.values(black_box(&points), &mut out));
     });
     group.finish();
 }

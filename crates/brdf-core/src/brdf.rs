@@ -1,108 +1,27 @@
-//! The three-parameter model, eq. (3) and (4).
+//! The three-parameter model of eq. (3) and (4), and models of the same form with other terms.
 
 use std::f64::consts::FRAC_1_PI;
 
-use serde::{Deserialize, Serialize};
-
-use crate::Geometry;
-use crate::facet::{Ellipsoid, FacetDistribution, P_DOMAIN};
+use crate::direction_pair::HalfVector;
+use crate::facet::{Ellipsoid, FacetDistribution};
 use crate::fresnel::Dielectric;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use crate::geometry::Geometry;
+use crate::numeric::{Ratio, Real};
+use crate::parameters::{ParameterError, Parameters, check_refractive_index};
 use crate::shadowing::{Shadowing, VGroove};
 
-/// The smallest and the largest k1 of the model's domain.
-pub const K1_DOMAIN: (f64, f64) = (1e-8, 1e8);
-
-/// The smallest and the largest refractive index of the model's domain.
-pub const N_DOMAIN: (f64, f64) = (1.0, 1e5);
-
-/// The three parameters of the model, in the paper's order.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "RawParameters")]
-pub struct Parameters {
-    /// Specular weight k2 = (pi/4) f(0) R(0) >= 0, dimensionless.
-    pub k2: f64,
-    /// Diffuse weight kD >= 0: the hemispherical reflectance of the Lambertian part.
-    pub kd: f64,
-    /// Width k1 of the facet distribution, within [`K1_DOMAIN`]; small is narrow.
-    pub k1: f64,
-}
-
-/// Why a set of parameters is outside the model's domain.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum ParameterError {
-    /// The specular weight is negative or not finite.
-    #[error("specular weight k2 = {0}: expected a finite number >= 0")]
-    K2(f64),
-    /// The diffuse weight is negative or not finite.
-    #[error("diffuse weight kD = {0}: expected a finite number >= 0")]
-    Kd(f64),
-    /// The width is outside [`K1_DOMAIN`].
-    #[error("facet width k1 = {0}: expected a number in [{min:e}, {max:e}]", min = K1_DOMAIN.0, max = K1_DOMAIN.1)]
-    K1(f64),
-    /// The refractive index is outside [`N_DOMAIN`].
-    #[error("refractive index n = {0}: expected a number in [{min}, {max:e}]", min = N_DOMAIN.0, max = N_DOMAIN.1)]
-    N(f64),
-    /// The exponent is outside [`P_DOMAIN`].
-    #[error("exponent p = {0}: expected a number in [{min}, {max}]", min = P_DOMAIN.0, max = P_DOMAIN.1)]
-    P(f64),
-}
-
-/// Parameters as they stand in a file, before they are checked.
-#[derive(Deserialize)]
-struct RawParameters {
-    k2: f64,
-    kd: f64,
-    k1: f64,
-}
-
-impl TryFrom<RawParameters> for Parameters {
-    type Error = ParameterError;
-
-    fn try_from(raw: RawParameters) -> Result<Self, ParameterError> {
-        Self::new(raw.k2, raw.kd, raw.k1)
-    }
-}
-
-impl Parameters {
-    /// Parameters k2 >= 0, kD >= 0 and k1 in [`K1_DOMAIN`].
-    pub fn new(k2: f64, kd: f64, k1: f64) -> Result<Self, ParameterError> {
-        let weight = 0.0..=f64::MAX;
-        if !weight.contains(&k2) {
-            return Err(ParameterError::K2(k2));
-        }
-        if !weight.contains(&kd) {
-            return Err(ParameterError::Kd(kd));
-        }
-        if !(K1_DOMAIN.0..=K1_DOMAIN.1).contains(&k1) {
-            return Err(ParameterError::K1(k1));
-        }
-        Ok(Self { k2, kd, k1 })
-    }
-}
-
-/// Checks a refractive index against [`N_DOMAIN`].
-pub fn check_refractive_index(n: f64) -> Result<f64, ParameterError> {
-    if (N_DOMAIN.0..=N_DOMAIN.1).contains(&n) {
-        Ok(n)
-    } else {
-        Err(ParameterError::N(n))
-    }
-}
-
-/// A BRDF of facets and a Lambertian part, put together of a facet distribution, a shadowing
-/// function and the Fresnel factor:
+/// The BRDF of a facet distribution, a shadowing function, the Fresnel factor and a Lambertian part:
 ///
 /// ```text
 /// f_r = (k2/pi) f(alpha)/f(0) R0(gamma) G / (cos psi cos theta) + kD/pi      [1/sr]
 /// ```
 ///
 /// f(alpha)/f(0) is the [facet distribution](crate::facet), R0 the [Fresnel
-/// factor](crate::fresnel::Dielectric::relative), G the [shadowing](crate::shadowing). The function
-/// is reciprocal, to the last bit. Which terms they are is known when the program is compiled, so
-/// that the choice costs nothing in a loop; [`AnyBrdf`](crate::AnyBrdf) chooses at run time.
+/// factor](crate::fresnel::Dielectric::relative) and G the [shadowing](crate::shadowing). The
+/// function is reciprocal to the last bit.
+///
+/// The terms are chosen at compile time, so that the choice costs nothing in a loop;
+/// [`AnyBrdf`](crate::AnyBrdf) chooses at run time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MicrofacetBrdf<F, S> {
     k2: f64,
@@ -126,21 +45,27 @@ pub struct MicrofacetBrdf<F, S> {
 pub type ThreeParameterBrdf = MicrofacetBrdf<Ellipsoid, VGroove>;
 
 impl ThreeParameterBrdf {
-    /// The model of the parameters at the refractive index n in [`N_DOMAIN`].
+    /// The model with the given parameters and the refractive index n in
+    /// [`N_DOMAIN`](crate::N_DOMAIN), relative to air.
+    ///
+    /// # Errors
+    ///
+    /// [`ParameterError`] for a parameter outside its domain.
     pub fn new(parameters: Parameters, n: f64) -> Result<Self, ParameterError> {
-        Self::of_terms(parameters, n, Ellipsoid::new, |_| VGroove)
+        Self::from_terms(parameters, n, Ellipsoid::new, |_| VGroove)
     }
 }
 
 impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
-    /// The model of the parameters at the refractive index n, with the terms of the width k1.
-    pub(crate) fn of_terms(
+    /// The model with the given parameters and refractive index n. The terms are functions of the
+    /// width k1.
+    pub(crate) fn from_terms(
         parameters: Parameters,
         n: f64,
         facet: impl FnOnce(f64) -> F,
         shadowing: impl FnOnce(f64) -> S,
     ) -> Result<Self, ParameterError> {
-        // The fields are public: what was changed by hand is checked again.
+        // The fields are public and may have been changed since they were checked.
         let Parameters { k2, kd, k1 } =
             Parameters::new(parameters.k2, parameters.kd, parameters.k1)?;
         Ok(Self {
@@ -166,35 +91,34 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         self.fresnel.n()
     }
 
-    /// f_r in 1/sr.
+    /// f_r in 1/sr, eq. (4).
     #[inline]
     pub fn value(&self, geometry: &Geometry) -> f64 {
         let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
-        let fresnel = self.fresnel.quotient_at(geometry);
+        let fresnel = self.fresnel.ratio_at(geometry);
         self.with_fresnel(fresnel, psi, theta, &geometry.half())
     }
 
-    /// The formula itself, in any kind of number, with the value of any form of the Fresnel factor:
-    /// one division.
+    /// f_r in any kind of number, with any form of the Fresnel factor, by one division.
     #[inline]
     pub(crate) fn with_fresnel<R: Real>(
         &self,
-        fresnel: Quotient<R>,
+        fresnel: Ratio<R>,
         cos_psi: R,
         cos_theta: R,
         half: &HalfVector<R>,
     ) -> R {
-        let facet = self.facet.quotient(half);
-        let shadowing = self.shadowing.quotient(cos_psi, cos_theta, half);
+        let facet = self.facet.ratio(half);
+        let shadowing = self.shadowing.ratio(cos_psi, cos_theta, half);
         let specular = (facet * shadowing * fresnel).value();
         specular.mul_add(R::of(self.k2 * FRAC_1_PI), R::of(self.kd * FRAC_1_PI))
     }
 
-    /// The derivatives of f_r by (k2, kD, k1), in 1/sr per unit.
+    /// The derivatives of f_r with respect to (k2, kD, k1), in 1/sr.
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 3] {
         let (t, sec) = (geometry.tan2_alpha, geometry.sec_alpha);
-        let fresnel = self.fresnel.quotient_at(geometry).value() * FRAC_1_PI;
+        let fresnel = self.fresnel.ratio_at(geometry).value() * FRAC_1_PI;
         let shadowing = self.shadowing.over_cosines_at(geometry);
         let facet = self.facet.relative(t, sec);
         let mut by_k1 = self.facet.derivative_k1(t, sec) * (shadowing * fresnel);
@@ -205,7 +129,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         [facet * (shadowing * fresnel), FRAC_1_PI, self.k2 * by_k1]
     }
 
-    /// The derivative of f_r by the refractive index n, in 1/sr per unit.
+    /// The derivative of f_r with respect to the refractive index n, in 1/sr.
     #[inline]
     pub fn derivative_n(&self, geometry: &Geometry) -> f64 {
         let fresnel_slope = self
@@ -218,7 +142,8 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self.shadowing.over_cosines_at(geometry)
     }
 
-    /// The derivative of f_r by the exponent p, in 1/sr per unit; 0 for a distribution without one.
+    /// The derivative of f_r with respect to the exponent p, in 1/sr; 0 for a distribution without
+    /// one.
     #[inline]
     pub fn derivative_p(&self, geometry: &Geometry) -> f64 {
         FRAC_1_PI
@@ -226,20 +151,14 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             * self
                 .facet
                 .derivative_p(geometry.tan2_alpha, geometry.sec_alpha)
-            * self.fresnel.quotient_at(geometry).value()
+            * self.fresnel.ratio_at(geometry).value()
             * self.shadowing.over_cosines_at(geometry)
     }
 
-    /// Scattered radiant intensity for unit flux, eq. (3): K = f_r cos theta, in 1/sr.
+    /// The scattered radiant intensity for unit flux, K = f_r cos theta in 1/sr, eq. (3).
     #[inline]
     pub fn radiant_intensity(&self, geometry: &Geometry) -> f64 {
         self.value(geometry) * geometry.cos_theta
-    }
-
-    /// The specular part without its shadowing, (k2/pi) f(alpha)/f(0) R0(gamma).
-    pub(crate) fn unshadowed(&self, tan2_alpha: f64, cos_gamma: f64) -> f64 {
-        let facet = self.facet.relative(tan2_alpha, (1.0 + tan2_alpha).sqrt());
-        self.k2 * FRAC_1_PI * facet * self.fresnel.relative(cos_gamma)
     }
 
     pub(crate) fn facet(&self) -> F {
@@ -259,11 +178,12 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     }
 }
 
-/// What of the paper's specular part depends on n and the geometry alone:
-/// R0(gamma) G / (cos psi cos theta).
+/// The factor R0(gamma) G / (cos psi cos theta) of the paper's specular part, dimensionless.
+///
+/// It depends on n and the geometry alone, and is the whole specular part for k2 = pi at alpha = 0.
 #[inline]
 pub fn mirror_factor(fresnel: &Dielectric, geometry: &Geometry) -> f64 {
-    fresnel.quotient_at(geometry).value() * VGroove.over_cosines_at(geometry)
+    fresnel.ratio_at(geometry).value() * VGroove.over_cosines_at(geometry)
 }
 
 #[cfg(test)]
@@ -278,7 +198,7 @@ mod tests {
         ThreeParameterBrdf::new(Parameters::new(k2, kd, k1).unwrap(), n).unwrap()
     }
 
-    /// Parameters over the model's whole domain of k1 and n, and usual weights.
+    /// Models over the whole domain of k1 and n with usual weights.
     fn any_brdf() -> impl Strategy<Value = ThreeParameterBrdf> {
         (1e-4..10.0, 0.0..1.0, -18.4..18.4_f64, -16.0..11.5_f64)
             .prop_map(|(k2, kd, log_k1, log_n)| brdf(k2, kd, log_k1.exp(), 1.0 + log_n.exp()))
@@ -298,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn the_radiant_intensity_carries_the_view_cosine() {
+    fn the_radiant_intensity_contains_the_view_cosine() {
         let brdf = brdf(0.3, 0.2, 0.15, 1.5);
         let geometry = Geometry::in_plane(0.3, 0.5).unwrap();
         let expected = brdf.value(&geometry) * 0.5_f64.cos();
@@ -356,7 +276,7 @@ mod tests {
         }
 
         #[test]
-        fn gradient_is_that_of_the_value(
+        fn the_gradient_is_the_derivative_of_the_value(
             k2 in 0.01..3.0, kd in 0.01..1.0, log_k1 in -4.0..2.0_f64, n in 1.1..4.0,
             psi in 0.0..1.5, theta in -1.5..1.5,
         ) {

@@ -1,27 +1,27 @@
-//! The model and its relatives: which terms they are made of, and one of them chosen at run time.
+//! The model and its reference models, one of which is chosen at run time.
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
-
-use crate::brdf::{MicrofacetBrdf, ParameterError, Parameters, ThreeParameterBrdf};
-use crate::facet::{Beckmann, Ellipsoid, FacetDistribution as _, Ggx, P_DOMAIN, Power};
+use crate::brdf::{MicrofacetBrdf, ThreeParameterBrdf};
+use crate::facet::{Beckmann, Ellipsoid, FacetDistribution as _, Ggx, Power};
 use crate::fresnel::Dielectric;
+use crate::geometry::{Geometry, GeometryError};
+use crate::parameters::{ModelParameters, ParameterError, Parameters, check_exponent};
 use crate::shadowing::{Smith, VGroove};
-use crate::{Geometry, GeometryError};
 
-/// A combination of facet distribution and shadowing; the Fresnel factor and the Lambertian part
-/// are the same for all.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+/// A combination of a facet distribution and a shadowing function. The Fresnel factor and the
+/// Lambertian part are the same for all families.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Family {
-    /// The paper's: the ellipsoid of eq. (2), V-groove shadowing.
+    /// The paper's model: the ellipsoid of eq. (2) with V-groove shadowing.
     Paper,
-    /// The ellipsoid with Smith's shadowing.
+    /// The ellipsoid with Smith shadowing.
     Smith,
-    /// The ellipsoid with a free exponent p, V-groove shadowing.
+    /// The ellipsoid with a free exponent p and V-groove shadowing.
     Power,
-    /// GGX with Smith's shadowing.
+    /// GGX with Smith shadowing.
     Ggx,
     /// Beckmann with V-groove shadowing.
     Beckmann,
@@ -38,7 +38,7 @@ impl Family {
     ];
 }
 
-/// The name that it has in files.
+/// The name of the family in files.
 impl fmt::Display for Family {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
@@ -51,47 +51,10 @@ impl fmt::Display for Family {
     }
 }
 
-/// All numbers that a model of any family may have, in the order (k2, kD, k1, n, p).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct ModelParameters {
-    /// Specular weight k2 >= 0.
-    pub k2: f64,
-    /// Diffuse weight kD >= 0.
-    pub kd: f64,
-    /// Width k1 of the facet distribution.
-    pub k1: f64,
-    /// Refractive index n of the facets.
-    pub n: f64,
-    /// Exponent p of the facet distribution; 1 where the family has none.
-    pub p: f64,
-}
-
-impl ModelParameters {
-    /// The paper's three parameters at the refractive index n.
-    pub fn three(parameters: Parameters, n: f64) -> Self {
-        let Parameters { k2, kd, k1 } = parameters;
-        Self {
-            k2,
-            kd,
-            k1,
-            n,
-            p: 1.0,
-        }
-    }
-
-    /// k2, kD and k1.
-    pub fn parameters(&self) -> Parameters {
-        Parameters {
-            k2: self.k2,
-            kd: self.kd,
-            k1: self.k1,
-        }
-    }
-}
-
-/// A BRDF whose family is chosen at run time. In files it is its family and its parameters.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Described", into = "Described")]
+/// A BRDF whose family is chosen at run time. In a file it consists of its family and its parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Described", into = "Described"))]
 pub enum AnyBrdf {
     /// [`Family::Paper`].
     Paper(ThreeParameterBrdf),
@@ -111,14 +74,16 @@ impl From<ThreeParameterBrdf> for AnyBrdf {
     }
 }
 
-/// A BRDF as it stands in a file.
-#[derive(Serialize, Deserialize)]
+/// A BRDF as a file contains it.
+#[cfg(feature = "serde")]
+#[derive(serde::Serialize, serde::Deserialize)]
 struct Described {
     family: Family,
     #[serde(flatten)]
     parameters: ModelParameters,
 }
 
+#[cfg(feature = "serde")]
 impl From<AnyBrdf> for Described {
     fn from(brdf: AnyBrdf) -> Self {
         Self {
@@ -128,6 +93,7 @@ impl From<AnyBrdf> for Described {
     }
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<Described> for AnyBrdf {
     type Error = ParameterError;
 
@@ -136,7 +102,7 @@ impl TryFrom<Described> for AnyBrdf {
     }
 }
 
-/// The same expression for the BRDF of each family.
+/// Evaluates the same expression for the BRDF of any family.
 macro_rules! each {
     ($any:expr, $brdf:ident => $value:expr) => {
         match $any {
@@ -152,29 +118,41 @@ macro_rules! each {
 pub(crate) use each;
 
 impl AnyBrdf {
-    /// The BRDF of a family with its parameters.
+    /// The BRDF of a family with the given parameters. Only [`Family::Power`] uses the exponent p.
     ///
-    /// Errors: a parameter outside its domain.
+    /// # Errors
+    ///
+    /// [`ParameterError`] for a parameter outside its domain.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters};
+    ///
+    /// let parameters = ModelParameters { k2: 0.3, kd: 0.1, k1: 0.2, n: 1.5, p: 1.0 };
+    /// let brdf = AnyBrdf::new(Family::Ggx, &parameters)?;
+    /// let f_r = brdf.value(&Geometry::in_plane(0.5, -0.4)?);
+    /// # assert!(f_r > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn new(family: Family, at: &ModelParameters) -> Result<Self, ParameterError> {
         let (three, n, p) = (at.parameters(), at.n, at.p);
         Ok(match family {
             Family::Paper => Self::Paper(ThreeParameterBrdf::new(three, n)?),
-            Family::Smith => Self::Smith(MicrofacetBrdf::of_terms(
+            Family::Smith => Self::Smith(MicrofacetBrdf::from_terms(
                 three,
                 n,
                 Ellipsoid::new,
                 Smith::new,
             )?),
             Family::Power => {
-                if !(P_DOMAIN.0..=P_DOMAIN.1).contains(&p) {
-                    return Err(ParameterError::P(p));
-                }
+                let p = check_exponent(p)?;
                 let facet = |k1| Power::new(k1, p);
-                Self::Power(MicrofacetBrdf::of_terms(three, n, facet, |_| VGroove)?)
+                Self::Power(MicrofacetBrdf::from_terms(three, n, facet, |_| VGroove)?)
             }
-            Family::Ggx => Self::Ggx(MicrofacetBrdf::of_terms(three, n, Ggx::new, Smith::new)?),
+            Family::Ggx => Self::Ggx(MicrofacetBrdf::from_terms(three, n, Ggx::new, Smith::new)?),
             Family::Beckmann => {
-                Self::Beckmann(MicrofacetBrdf::of_terms(three, n, Beckmann::new, |_| {
+                Self::Beckmann(MicrofacetBrdf::from_terms(three, n, Beckmann::new, |_| {
                     VGroove
                 })?)
             }
@@ -186,7 +164,7 @@ impl AnyBrdf {
         each!(self, brdf => brdf.parameters())
     }
 
-    /// All parameters.
+    /// All parameters of the model.
     pub fn model_parameters(&self) -> ModelParameters {
         let p = each!(self, brdf => brdf.facet().p());
         ModelParameters {
@@ -223,7 +201,7 @@ impl AnyBrdf {
         each!(self, brdf => brdf.value(geometry))
     }
 
-    /// The derivatives of f_r by (k2, kD, k1, n, p), in 1/sr per unit.
+    /// The derivatives of f_r with respect to (k2, kD, k1, n, p), in 1/sr.
     #[inline]
     pub fn gradient(&self, geometry: &Geometry) -> [f64; 5] {
         each!(self, brdf => {
@@ -232,7 +210,11 @@ impl AnyBrdf {
         })
     }
 
-    /// [`MicrofacetBrdf::hemispherical_reflectance`].
+    /// [`MicrofacetBrdf::hemispherical_reflectance`] of the chosen family.
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError::Incidence`] if psi is not in [0, pi/2).
     pub fn hemispherical_reflectance(
         &self,
         psi: f64,
@@ -241,12 +223,12 @@ impl AnyBrdf {
         each!(self, brdf => brdf.hemispherical_reflectance(psi, tolerance))
     }
 
-    /// [`MicrofacetBrdf::energy_violation_angle`].
+    /// [`MicrofacetBrdf::energy_violation_angle`] of the chosen family.
     pub fn energy_violation_angle(&self) -> Option<f64> {
         each!(self, brdf => brdf.energy_violation_angle())
     }
 
-    /// [`MicrofacetBrdf::implied_facet_reflectance`].
+    /// [`MicrofacetBrdf::implied_facet_reflectance`] of the chosen family.
     pub fn implied_facet_reflectance(&self) -> f64 {
         each!(self, brdf => brdf.implied_facet_reflectance())
     }

@@ -1,4 +1,4 @@
-//! Directions and angles, and the few quantities of them that the model's terms need.
+//! A pair of directions, reduced to the quantities that the terms of the model depend on.
 
 #![expect(
     clippy::inline_always,
@@ -7,23 +7,23 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use nalgebra::Vector3;
+use crate::direction::{Direction, difference, divided, dot, length, sum};
+use crate::direction_pair::{DirectionPair, HalfDifference, HalfVector, Zenith};
+use crate::numeric::{exchanged_if, sin2_cos2_of_any_half};
 
-use crate::pair::{HalfVector, Pair, TanDifference, Zenith};
-use crate::trigonometry::{exchanged_if, sin2_cos2_of_any_half};
-
-/// How far the length of a direction vector may be from 1.
+/// The largest deviation of a direction vector's length from 1.
 ///
-/// Wide enough for vectors that were rounded to `f32`; such vectors are brought to length 1.
+/// It admits vectors that were rounded to `f32`; these are normalised.
 const LENGTH_TOLERANCE: f64 = 1e-6;
 
-/// One pair of directions: light comes from the incidence zenith angle psi, and is seen from the
-/// zenith angle theta at the azimuth phi from the source (0 = back towards the source, pi =
-/// forward). The surface normal is the z axis.
+/// A pair of directions: light is incident at the zenith angle psi and observed at the zenith angle
+/// theta and the azimuth phi relative to the source (0 is back towards the source, pi is forward).
+/// The surface normal is the z axis (Fig. 1 of the paper).
 ///
-/// A geometry holds what the terms of the model need, in forms that keep their relative accuracy
-/// up to grazing angles and next to the specular direction. With h = source + view, its component
-/// `h_z` = cos psi + cos theta along the normal and `h_t` across it (Fig. 1 of the paper):
+/// A geometry contains the quantities that the terms of the model depend on, in forms that keep
+/// their relative accuracy up to grazing angles and next to the specular direction. With
+/// h = source + view, its component `h_z` = cos psi + cos theta along the normal and its tangential
+/// component `h_t`:
 ///
 /// ```text
 /// tan^2 alpha = h_t^2 / h_z^2
@@ -33,10 +33,10 @@ const LENGTH_TOLERANCE: f64 = 1e-6;
 /// sin^2 gamma = |source - view|^2 / 4
 /// ```
 ///
-/// where alpha is the tilt of the facet that mirrors source into view and gamma the incidence
-/// angle on that facet. The first form follows from
-/// sin psi - sin theta = (cos psi + cos theta) tan((psi - theta)/2): no difference of nearly equal
-/// numbers is left, but for psi - theta itself, which is exact where it matters.
+/// where alpha is the tilt of the facet that mirrors the source into the view and gamma the
+/// incidence angle on that facet. The first form follows from
+/// sin psi - sin theta = (cos psi + cos theta) tan((psi - theta)/2). The only difference of nearly
+/// equal numbers that remains is psi - theta, which is exact if they are nearly equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Geometry {
     pub(crate) cos_psi: f64,
@@ -48,8 +48,9 @@ pub struct Geometry {
     pub(crate) sec_alpha: f64,
 }
 
-/// Why a pair of directions is outside the model's domain.
+/// A pair of directions outside the model's domain.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GeometryError {
     /// The incidence angle is not in [0, pi/2).
     #[error("incidence angle psi = {0} rad: expected a value in [0, pi/2)")]
@@ -79,7 +80,21 @@ impl Geometry {
     ///
     /// Domain: psi in [0, pi/2), theta in (-pi/2, pi/2), any finite phi. The `f64` nearest to
     /// pi/2 is below pi/2 and belongs to the domain. A negative theta is the direction (|theta|,
-    /// phi + pi), so that `new(psi, theta, 0.0)` takes the signed in-plane angle of the paper.
+    /// phi + pi), so that `new(psi, theta, 0.0)` accepts the signed in-plane angle of the paper.
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError`] for an angle outside its domain.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use brdf_core::Geometry;
+    ///
+    /// let geometry = Geometry::new(0.5, 0.5, std::f64::consts::PI)?; // the specular direction
+    /// assert!(geometry.tan2_alpha() < 1e-30);
+    /// # Ok::<(), brdf_core::GeometryError>(())
+    /// ```
     #[inline(always)]
     pub fn new(psi: f64, theta: f64, phi: f64) -> Result<Self, GeometryError> {
         if !(0.0..=FRAC_PI_2).contains(&psi) {
@@ -92,37 +107,65 @@ impl Geometry {
             return Err(GeometryError::Azimuth(phi));
         }
         let (sin2_half_phi, cos2_half_phi) = sin2_cos2_of_any_half(phi);
-        // (theta < 0, phi) is (|theta|, phi + pi), and that exchanges the two squares.
+        // (theta < 0, phi) equals (|theta|, phi + pi), which exchanges the two squares.
         let (sin2, cos2) = exchanged_if(theta < 0.0, sin2_half_phi, cos2_half_phi);
         Ok(Self::from_half_azimuth(psi, theta.abs(), sin2, cos2))
     }
 
     /// The geometry in the plane of incidence, with the paper's signed view angle, in radians:
-    /// theta = -psi is the specular direction, theta = psi looks back into the source.
+    /// theta = -psi is the specular direction and theta = psi looks back into the source.
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError`] for an angle outside the domain of [`new`](Self::new).
     #[inline(always)]
     pub fn in_plane(psi: f64, signed_theta: f64) -> Result<Self, GeometryError> {
         Self::new(psi, signed_theta, 0.0)
     }
 
     /// The geometry of two unit vectors that point away from the surface, towards the source and
-    /// towards the viewer; z is the surface normal.
+    /// towards the viewer; z is along the surface normal.
+    ///
+    /// Vectors whose length differs from 1 by up to 1e-6 are normalised.
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError::Length`] for a vector that is not of unit length and
+    /// [`GeometryError::BelowSurface`] for one with z <= 0.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use brdf_core::Geometry;
+    ///
+    /// let geometry = Geometry::from_directions([0.6, 0.0, 0.8], [0.0, 0.6, 0.8])?;
+    /// assert!((geometry.cos_psi() - 0.8).abs() < 1e-15);
+    /// # Ok::<(), brdf_core::GeometryError>(())
+    /// ```
     pub fn from_directions(
-        source: &Vector3<f64>,
-        view: &Vector3<f64>,
+        source: impl Direction,
+        view: impl Direction,
     ) -> Result<Self, GeometryError> {
-        let source = checked_direction(source)?;
-        let view = checked_direction(view)?;
-        let half = source + view;
-        let difference = source - view;
-        let across2 = half.x * half.x + half.y * half.y;
-        let sin2_gamma = 0.25 * difference.norm_squared();
-        let length2 = 0.25 * half.norm_squared();
-        let pair = Pair::of_half(source.z, view.z, 0.25 * across2, length2);
+        let source = checked_direction(source.components())?;
+        let view = checked_direction(view.components())?;
+        let half = sum(source, view);
+        let difference = difference(source, view);
+        let across2 = half[0] * half[0] + half[1] * half[1];
+        let sin2_gamma = 0.25 * dot(difference, difference);
+        let length2 = 0.25 * dot(half, half);
+        let pair = DirectionPair::from_half(source[2], view[2], 0.25 * across2, length2);
         Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))
     }
 
-    /// The geometry of the cosines of psi and theta, in (0, 1], and of phi, in [-1, 1]. A cosine
-    /// says little of a small angle: where angles or directions are at hand, they are better.
+    /// The geometry of the cosines of psi and theta, in (0, 1], and of phi, in [-1, 1].
+    ///
+    /// A cosine determines a small angle poorly: angles or directions are more accurate if they are
+    /// available.
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError::ZenithCosine`] or [`GeometryError::AzimuthCosine`] for a cosine outside its
+    /// domain.
     pub fn from_cosines(cos_psi: f64, cos_theta: f64, cos_phi: f64) -> Result<Self, GeometryError> {
         for cosine in [cos_psi, cos_theta] {
             if !(cosine > 0.0 && cosine <= 1.0) {
@@ -132,8 +175,8 @@ impl Geometry {
         if !(-1.0..=1.0).contains(&cos_phi) {
             return Err(GeometryError::AzimuthCosine(cos_phi));
         }
-        let pair = Pair::from_cosines(cos_psi, cos_theta, cos_phi);
-        // |source - view|^2: along the normal, across it in the plane, and out of it.
+        let pair = DirectionPair::from_cosines(cos_psi, cos_theta, cos_phi);
+        // |source - view|^2 has parts along the normal, tangential in plane, and out of plane.
         let along = cos_psi - cos_theta;
         let sin2 = |cosine: f64| (1.0 - cosine) * (1.0 + cosine);
         let sines = (sin2(cos_psi) * sin2(cos_theta)).sqrt();
@@ -148,15 +191,16 @@ impl Geometry {
         Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))
     }
 
-    /// Both zenith angles not negative, the azimuth as sin^2(phi/2) and cos^2(phi/2).
+    /// The geometry of two non-negative zenith angles and the azimuth as sin^2(phi/2) and
+    /// cos^2(phi/2).
     #[inline(always)]
     fn from_half_azimuth(psi: f64, theta: f64, sin2_half_phi: f64, cos2_half_phi: f64) -> Self {
         let (source, view) = (Zenith::new(psi), Zenith::new(theta));
-        let difference = TanDifference::of(source, view);
-        let pair = Pair::from_difference(source, view, difference, cos2_half_phi);
+        let difference = HalfDifference::of(source, view);
+        let pair = DirectionPair::from_difference(source, view, difference, cos2_half_phi);
         let h_z = source.cos + view.cos;
         let sines = 4.0 * source.sin * view.sin;
-        // One rounding less than from the pair.
+        // This has one rounding less than the pair's value.
         let tan2_alpha = difference.tan2 + sines * cos2_half_phi / (h_z * h_z);
         // |source - view|^2, with cos psi - cos theta = -(sin psi + sin theta) tan((psi-theta)/2).
         let sum_of_sines = source.sin + view.sin;
@@ -165,7 +209,7 @@ impl Geometry {
     }
 
     #[inline(always)]
-    fn from_pair(pair: &Pair<f64>, tan2_alpha: f64, sin2_gamma: f64) -> Self {
+    fn from_pair(pair: &DirectionPair<f64>, tan2_alpha: f64, sin2_gamma: f64) -> Self {
         let half = pair.half;
         Self {
             cos_psi: pair.cos_psi,
@@ -178,10 +222,10 @@ impl Geometry {
         }
     }
 
-    /// The same for the terms of the model.
+    /// The half vector with a component of 1 along the normal.
     #[inline(always)]
     pub(crate) fn half(&self) -> HalfVector<f64> {
-        HalfVector::of_tilt(self.tan2_alpha, self.sec_alpha)
+        HalfVector::from_tilt(self.tan2_alpha, self.sec_alpha)
     }
 
     /// cos psi, the cosine of the incidence angle.
@@ -220,15 +264,16 @@ impl Geometry {
     }
 }
 
-fn checked_direction(direction: &Vector3<f64>) -> Result<Vector3<f64>, GeometryError> {
-    let length = direction.norm();
+/// The normalised direction.
+fn checked_direction(direction: [f64; 3]) -> Result<[f64; 3], GeometryError> {
+    let length = length(direction);
     if length.is_nan() || (length - 1.0).abs() > LENGTH_TOLERANCE {
         return Err(GeometryError::Length(length));
     }
-    if direction.z <= 0.0 {
-        return Err(GeometryError::BelowSurface(direction.z));
+    if direction[2] <= 0.0 {
+        return Err(GeometryError::BelowSurface(direction[2]));
     }
-    Ok(direction / length)
+    Ok(divided(direction, length))
 }
 
 #[cfg(test)]
@@ -239,12 +284,12 @@ mod tests {
 
     use super::*;
 
-    fn direction(zenith: f64, azimuth: f64) -> Vector3<f64> {
-        Vector3::new(
+    fn direction(zenith: f64, azimuth: f64) -> [f64; 3] {
+        [
             zenith.sin() * azimuth.cos(),
             zenith.sin() * azimuth.sin(),
             zenith.cos(),
-        )
+        ]
     }
 
     #[test]
@@ -279,14 +324,21 @@ mod tests {
 
     #[test]
     fn directions_outside_the_domain_are_named() {
-        let up = Vector3::z();
-        let message = |a: &Vector3<f64>, b: &Vector3<f64>| {
-            Geometry::from_directions(a, b).unwrap_err().to_string()
-        };
-        assert!(message(&(2.0 * up), &up).contains("length 2"));
-        assert!(message(&up, &-up).contains("z = -1"));
-        assert!(message(&up, &Vector3::x()).contains("z = 0"));
-        assert!(message(&up, &Vector3::new(f64::NAN, 0.0, 1.0)).contains("length NaN"));
+        let up = [0.0, 0.0, 1.0];
+        let message = |a, b| Geometry::from_directions(a, b).unwrap_err().to_string();
+        assert!(message([0.0, 0.0, 2.0], up).contains("length 2"));
+        assert!(message(up, [0.0, 0.0, -1.0]).contains("z = -1"));
+        assert!(message(up, [1.0, 0.0, 0.0]).contains("z = 0"));
+        assert!(message(up, [f64::NAN, 0.0, 1.0]).contains("length NaN"));
+    }
+
+    #[cfg(feature = "nalgebra")]
+    #[test]
+    fn arrays_and_vectors_give_the_same_geometry() {
+        let (source, view) = (direction(0.4, 0.3), direction(1.1, 2.0));
+        let by_arrays = Geometry::from_directions(source, &view).unwrap();
+        let [source, view] = [source, view].map(nalgebra::Vector3::from);
+        assert_eq!(Geometry::from_directions(&source, view), Ok(by_arrays));
     }
 
     proptest! {
@@ -296,7 +348,7 @@ mod tests {
         ) {
             let by_angles = Geometry::new(psi, theta, phi).unwrap();
             let by_directions =
-                Geometry::from_directions(&direction(psi, 0.0), &direction(theta, phi)).unwrap();
+                Geometry::from_directions(direction(psi, 0.0), direction(theta, phi)).unwrap();
             prop_assert!((by_angles.cos_gamma - by_directions.cos_gamma).abs() < 1e-14);
             prop_assert!((by_angles.sin2_gamma - by_directions.sin2_gamma).abs() < 1e-14);
             let tan2 = by_angles.tan2_alpha;
@@ -326,7 +378,7 @@ mod tests {
         }
 
         #[test]
-        fn sine_and_cosine_of_the_facet_angle_belong_together(
+        fn sine_and_cosine_of_the_facet_angle_are_consistent(
             psi in 0.0..FRAC_PI_2, theta in 0.0..FRAC_PI_2, phi in -7.0..7.0_f64,
         ) {
             let g = Geometry::new(psi, theta, phi).unwrap();

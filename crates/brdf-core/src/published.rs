@@ -1,27 +1,27 @@
-//! Table 1 of the paper: the fitted parameters of three lacquers.
+//! Table 1 of the paper, the fitted parameters of three lacquers.
 
-use crate::Parameters;
+use crate::parameters::Parameters;
 
 /// One row of Table 1 of Li, Yan and Wu (2002).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PublishedSample {
-    /// Number of the sample in the paper.
+    /// The number of the sample in the paper.
     pub sample: &'static str,
     /// The lacquer.
     pub coating: &'static str,
-    /// What it is on.
+    /// The substrate.
     pub base: &'static str,
-    /// Wavelength in micrometres.
+    /// The wavelength in micrometres.
     pub wavelength_um: f64,
-    /// Refractive index of the lacquer at the wavelength.
+    /// The refractive index of the lacquer at the wavelength, relative to air.
     pub n: f64,
     /// The fitted parameters.
     pub parameters: Parameters,
-    /// E of eq. (5) that the paper reports, in percent.
+    /// The error E of eq. (5) that the paper reports, in percent.
     pub e_percent: f64,
 }
 
-/// Table 1, its rows in the paper's order.
+/// The rows of Table 1 in the paper's order.
 pub const PUBLISHED: [PublishedSample; 6] = [
     row(GREY, 0.44, 1.699, [1.137, 0.0, 0.130], 6.20),
     row(GREY, 0.91, 1.60, [1.211, 0.521, 0.071], 6.47),

@@ -1,31 +1,45 @@
-//! What a whole surface does with the light: hemispherical reflectance, whether it stays below 1,
-//! the facet reflectance that k2 implies, and the laser radar cross-section.
+//! Quantities of the whole surface: the hemispherical reflectance, energy conservation, the facet
+//! reflectance that k2 implies, and the laser radar cross-section.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 use crate::brdf::MicrofacetBrdf;
 use crate::facet::FacetDistribution;
 use crate::fresnel::Dielectric;
-use crate::quadrature::integrate;
+use crate::geometry::{Geometry, GeometryError};
+use crate::numeric::integrate;
 use crate::shadowing::Shadowing;
-use crate::{Geometry, GeometryError};
 
-/// Up to this incidence angle the energy check looks for a reflectance above 1, in radians
-/// (89 deg).
+/// The largest incidence angle of the energy check, in radians (89 deg).
 pub const ENERGY_CHECK_LIMIT: f64 = 89.0 * PI / 180.0;
 
-/// Tolerance of the reflectances in the energy check: the estimates are far better than that.
+/// The relative tolerance of the reflectances in the energy check. The actual errors are far smaller.
 const ENERGY_CHECK_TOLERANCE: f64 = 1e-3;
 
-/// Steps in which the energy check goes up to its limit, 5.6 deg each: the reflectance is a smooth
-/// function of the incidence angle without any narrow feature.
+/// The number of steps of the energy check up to its limit. The reflectance is a smooth function of
+/// the incidence angle without narrow features, so that steps of 5.6 deg suffice.
 const ENERGY_CHECK_STEPS: u32 = 16;
 
 impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
-    /// Directional-hemispherical reflectance: the integral of f_r cos theta over the hemisphere of
-    /// views, for incidence psi in [0, pi/2), in radians. Dimensionless.
+    /// The directional-hemispherical reflectance, dimensionless: the integral of f_r cos theta over
+    /// the hemisphere of views for the incidence psi in [0, pi/2), in radians.
     ///
     /// rho(psi) = k2 [`specular_reflectance`]`(psi) + kD`, to the relative `tolerance`.
+    ///
+    /// # Errors
+    ///
+    /// [`GeometryError::Incidence`] if psi is not in [0, pi/2).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use brdf_core::{Parameters, ThreeParameterBrdf};
+    ///
+    /// let brdf = ThreeParameterBrdf::new(Parameters::new(1.211, 0.521, 0.071)?, 1.60)?;
+    /// let rho = brdf.hemispherical_reflectance(0.0, 1e-6)?;
+    /// assert!((rho - 0.62).abs() < 0.005);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn hemispherical_reflectance(
         &self,
         psi: f64,
@@ -42,10 +56,10 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         Ok(parameters.k2 * specular + parameters.kd)
     }
 
-    /// The smallest incidence angle psi, in radians, from which the hemispherical reflectance is
-    /// above 1, looked for up to [`ENERGY_CHECK_LIMIT`]; `None` where there is no such angle.
+    /// The smallest incidence angle psi, in radians, above which the hemispherical reflectance exceeds
+    /// 1, or `None` if it does not exceed 1 up to [`ENERGY_CHECK_LIMIT`].
     ///
-    /// More than 1 is not possible for a real surface.
+    /// A reflectance above 1 violates the conservation of energy.
     pub fn energy_violation_angle(&self) -> Option<f64> {
         let excess = |psi: f64| {
             self.hemispherical_reflectance(psi, ENERGY_CHECK_TOLERANCE)
@@ -69,31 +83,37 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         Some(above)
     }
 
-    /// The facet reflectance at normal incidence that k2 = (pi/4) f(0) R(0) implies,
+    /// The facet reflectance at normal incidence that k2 = (pi/4) f(0) R(0) implies, dimensionless:
     /// R(0) = 4 k2 / (pi f(0)), with f(0) from the
     /// [normalisation](FacetDistribution::peak_density).
     ///
-    /// To be compared with Fresnel's ((n-1)/(n+1))^2; dimensionless.
+    /// The Fresnel equations give ((n-1)/(n+1))^2 for it.
     pub fn implied_facet_reflectance(&self) -> f64 {
         4.0 * self.parameters().k2 / (PI * self.facet().peak_density())
     }
 
-    /// Laser radar cross-section of a unit area, sigma0 = 4 pi f_r cos psi cos theta
-    /// (dimensionless: m^2 per m^2). The monostatic one is that at theta = psi, phi = 0.
+    /// The laser radar cross-section of a unit area, sigma0 = 4 pi f_r cos psi cos theta,
+    /// dimensionless (m^2 per m^2). The monostatic cross-section is that at theta = psi, phi = 0.
     pub fn unit_area_cross_section(&self, geometry: &Geometry) -> f64 {
         4.0 * PI * self.value(geometry) * (geometry.cos_psi * geometry.cos_theta)
     }
 }
 
-/// Hemispherical reflectance of the specular part for k2 = 1 at incidence psi in [0, pi/2), in
+/// The hemispherical reflectance of the specular part for k2 = 1 at the incidence psi in [0, pi/2), in
 /// radians, to the relative `tolerance`. Dimensionless.
 ///
-/// The integral is taken over the facet normals (tilt alpha, azimuth beta), where the peak stands
-/// still: d omega of the view is 4 cos gamma times that of the facet normal. With t = tan^2 alpha,
-/// sin alpha d alpha is 1/2 cos^3 alpha dt, and tan alpha = w sinh u, w = min(k1, 1), makes the
-/// distribution smooth for any k1. The integrand ends at the horizon and has kinks where the
-/// V-groove shadowing changes its branch; for a given alpha each lies at a known cos gamma, hence
-/// at a known beta, and enters or leaves the range of beta at a known alpha: the panels end there.
+/// The integral is over the facet normals (tilt alpha, azimuth beta), in which the peak does not
+/// depend on psi: d omega of the view is 4 cos gamma times that of the facet normal. With
+/// t = tan^2 alpha, sin alpha d alpha is 1/2 cos^3 alpha dt, and the substitution
+/// tan alpha = w sinh u with w = min(k1, 1) makes the distribution smooth for any k1.
+///
+/// The integrand ends at the horizon and has kinks where the V-groove shadowing changes its branch.
+/// For a given alpha each of these is at a known cos gamma, hence at a known beta, and enters or
+/// leaves the range of beta at a known alpha. The panels of the integration end there.
+///
+/// # Errors
+///
+/// [`GeometryError::Incidence`] if psi is not in [0, pi/2).
 pub fn specular_reflectance<F: FacetDistribution, S: Shadowing>(
     facet: F,
     shadowing: S,
@@ -124,7 +144,7 @@ pub fn specular_reflectance<F: FacetDistribution, S: Shadowing>(
         (FRAC_PI_2 + psi) / 3.0,
         FRAC_PI_4 + 0.5 * psi,
     ]
-    // Beyond the last, no facet sends light above the horizon.
+    // Steeper facets reflect no light above the horizon.
     .map(|alpha: f64| alpha.min(FRAC_PI_4 + 0.5 * psi))
     .map(|alpha| (alpha.tan() / width).asinh());
     breaks.sort_by(f64::total_cmp);
@@ -190,8 +210,8 @@ mod tests {
             .unwrap()
     }
 
-    /// The defining integral over view directions by the midpoint rule: slow, and for broad lobes
-    /// only, but nothing in common with the integral over facets.
+    /// The defining integral over view directions by the midpoint rule. It is slow and for broad lobes
+    /// only, but independent of the integral over facets.
     fn by_views(value: impl Fn(&Geometry) -> f64, psi: f64, steps: u32) -> f64 {
         let count = f64::from(steps);
         let mut sum = 0.0;
@@ -207,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn published_samples_reflect_what_is_known() {
+    fn published_samples_have_the_known_reflectances() {
         let known = [
             (
                 "002",
@@ -252,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn the_neighbours_agree_with_the_integral_over_views() {
+    fn all_families_agree_with_the_integral_over_views() {
         for family in Family::ALL {
             let at = ModelParameters {
                 k2: 0.5,
@@ -298,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn sample_002_breaks_energy_conservation_between_50_and_60_degrees() {
+    fn sample_002_violates_energy_conservation_from_between_50_and_60_degrees() {
         let brdf = published("002", 1.04);
         let angle = brdf.energy_violation_angle().unwrap();
         assert!((50.0..60.0).contains(&angle.to_degrees()));
@@ -308,14 +328,14 @@ mod tests {
     }
 
     #[test]
-    fn the_implied_facet_reflectance_is_the_known_one() {
+    fn the_implied_facet_reflectance_is_the_known_value() {
         let at = |sample, wavelength| published(sample, wavelength).implied_facet_reflectance();
         assert!((at("001", 0.91) - 0.1151).abs() < 5e-5);
         assert!((at("003", 1.04) - 0.0653).abs() < 5e-5);
     }
 
     #[test]
-    fn the_cross_section_carries_both_cosines() {
+    fn the_cross_section_contains_both_cosines() {
         let brdf = published("001", 0.91);
         let retro = Geometry::in_plane(0.5, 0.5).unwrap();
         let sigma0 = 4.0 * PI * brdf.value(&retro) * 0.5_f64.cos().powi(2);
@@ -323,14 +343,14 @@ mod tests {
     }
 
     #[test]
-    fn an_integral_without_an_end_does_not_take_for_ever() {
-        // At n = 1 the Fresnel factor has no bound at grazing.
+    fn a_divergent_integral_terminates() {
+        // At n = 1 the Fresnel factor is unbounded at grazing.
         let brdf = ThreeParameterBrdf::new(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.0).unwrap();
         assert!(brdf.hemispherical_reflectance(FRAC_PI_2, 1e-3).unwrap() > 1e6);
     }
 
     #[test]
-    fn an_incidence_outside_the_domain_is_refused() {
+    fn an_incidence_outside_the_domain_is_an_error() {
         let brdf = published("001", 0.91);
         assert_eq!(
             brdf.hemispherical_reflectance(1.6, 1e-6),

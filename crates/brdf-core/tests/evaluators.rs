@@ -1,23 +1,24 @@
-//! Every evaluator against the exact value of single points, over the whole domain.
+//! Compares every evaluator with the values of single points, over the whole domain.
 
-#![expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "rounds to the nearest `f32`"
+)]
 
 use std::f64::consts::{PI, TAU};
 
 use brdf_core::evaluator::{
-    Evaluator, Exact, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
-    LengthError, Points, Single, SpecularOnly,
+    Double, Evaluator, FittedFresnel, Lambertian, LengthError, Points, Single, SpecularOnly,
 };
-use brdf_core::published::PUBLISHED;
-use brdf_core::scene::{Azimuth, Coordinates, Domain, Probe};
-use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, ThreeParameterBrdf};
+use brdf_core::scene::{Coordinates, Domain, Probe};
+use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters};
 use proptest::prelude::*;
 
 fn brdf(family: Family, k2: f64, kd: f64, k1: f64, n: f64, p: f64) -> AnyBrdf {
     AnyBrdf::new(family, &ModelParameters { k2, kd, k1, n, p }).unwrap()
 }
 
-/// Any family, with usual weights, k1 in a range and any usual index.
+/// A BRDF of any family with usual weights, k1 in a range and a usual refractive index.
 fn any_brdf(k1: std::ops::Range<f64>) -> impl Strategy<Value = AnyBrdf> {
     let log_k1 = k1.start.ln()..k1.end.ln();
     (0..5_usize, 0.01..3.0, 0.0..1.0, log_k1, 1.0..6.0, 0.2..4.0).prop_map(
@@ -46,7 +47,7 @@ fn angles([psi, theta, phi]: &[Vec<f64>; 3], count: usize) -> Points<'_, f64> {
     }
 }
 
-/// The largest error at points of all coordinates that an evaluator allows.
+/// The largest error of an evaluator at points in all coordinates.
 fn worst(brdf: &AnyBrdf, evaluator: &dyn Evaluator, domain: &Domain, seed: u32) -> f64 {
     [
         Coordinates::Cosines,
@@ -71,19 +72,19 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn the_batch_in_f64_is_right_to_a_few_roundings(
+    fn the_batch_in_f64_is_accurate_to_a_few_roundings(
         brdf in any_brdf(1e-6..1e3), largest_deg in 1.0..89.999_f64, seed in 0..1000_u32,
     ) {
         let domain = all_directions(largest_deg);
         let error = |coordinates| {
             let probe = Probe::new(&brdf, &domain, coordinates, 2000, seed);
-            probe.errors(&Exact::new(brdf)).max
+            probe.errors(&Double::new(brdf)).max
         };
-        // An exponent multiplies the rounding of the logarithm; tails of exp(-x) that of x.
+        // The exponent p multiplies the rounding error of the logarithm, and tails of exp(-x) that of x.
         let allowed = match brdf {
             AnyBrdf::Power(_) => 1e-13,
             AnyBrdf::Beckmann(_) => 1e-12,
-            // Smith's sines are taken from the cosines.
+            // The sines of the Smith shadowing are computed from the cosines.
             AnyBrdf::Smith(_) | AnyBrdf::Ggx(_) => {
                 32.0 * f64::EPSILON * brdf.parameters().k1.powi(2).max(1.0)
             }
@@ -91,8 +92,8 @@ proptest! {
         };
         prop_assert!(error(Coordinates::Cosines) <= allowed);
         prop_assert!(error(Coordinates::Angles) <= allowed);
-        // The single point brings vectors to length 1, which rounds them once more: for a narrow
-        // lobe, next to grazing above all, that is a change of the point.
+        // A single point normalises its vectors, which rounds them once more. For a narrow lobe this
+        // changes the point, most of all next to grazing.
         let tilt = brdf.parameters().k1.min(1.0) * largest_deg.to_radians().cos();
         let rounding = 16.0 * f64::EPSILON / tilt;
         prop_assert!(error(Coordinates::Directions) <= allowed + rounding);
@@ -105,7 +106,7 @@ proptest! {
     }
 
     #[test]
-    fn a_fitted_fresnel_factor_errs_by_no_more_than_it_says(
+    fn the_error_of_a_fitted_fresnel_factor_is_within_its_bound(
         brdf in any_brdf(0.01..10.0), largest_deg in 10.0..85.0_f64, seed in 0..1000_u32,
         log_tolerance in -12.0..-2.0_f64,
     ) {
@@ -122,11 +123,11 @@ proptest! {
     }
 
     #[test]
-    fn a_point_has_the_same_value_wherever_it_stands(
+    fn a_point_has_the_same_value_at_any_index(
         brdf in any_brdf(1e-3..10.0), count in 0..100_usize,
     ) {
         let arrays = single_points();
-        for evaluator in [&Exact::new(brdf) as &dyn Evaluator, &Single::new(brdf)] {
+        for evaluator in [&Double::new(brdf) as &dyn Evaluator, &Single::new(brdf)] {
             let mut together = vec![0.0; count];
             evaluator.values(&angles(&arrays, count), &mut together).unwrap();
             for (i, value) in together.iter().enumerate() {
@@ -137,25 +138,25 @@ proptest! {
     }
 
     #[test]
-    fn azimuths_beyond_a_turn_are_those_within(
+    fn azimuths_beyond_a_turn_are_periodic(
         brdf in any_brdf(1e-2..10.0), psi in 0.0..1.5, theta in -1.5..1.5, turns in 1..50_i32,
     ) {
-        let exact = Exact::new(brdf);
+        let double = Double::new(brdf);
         let (near, far) = (2.0, 2.0 + f64::from(turns) * TAU);
-        let (near, far) = (exact.value(psi, theta, near), exact.value(psi, theta, far));
+        let (near, far) = (double.value(psi, theta, near), double.value(psi, theta, far));
         prop_assert!((near / far - 1.0).abs() < 1e-9);
     }
 }
 
 #[test]
-fn arrays_of_different_lengths_are_refused() {
-    let exact = Exact::new(brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0));
+fn arrays_of_different_lengths_are_an_error() {
+    let double = Double::new(brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0));
     let points = Points::Cosines {
         psi: &[1.0, 1.0],
         theta: &[1.0],
         phi: &[1.0, 1.0],
     };
-    let error = exact.values(&points, &mut [0.0; 2]);
+    let error = double.values(&points, &mut [0.0; 2]);
     assert_eq!(
         error,
         Err(LengthError {
@@ -164,30 +165,27 @@ fn arrays_of_different_lengths_are_refused() {
         })
     );
     let arrays = single_points();
-    let error = exact
+    let error = double
         .values(&angles(&arrays, 5), &mut [0.0; 4])
         .unwrap_err();
     assert!(error.to_string().contains("4 elements: expected 5"));
-    assert!(exact.values(&angles(&arrays, 0), &mut []).is_ok());
+    assert!(double.values(&angles(&arrays, 0), &mut []).is_ok());
     assert!(
-        exact
+        double
             .grid(&[0.0], &[0.0, 0.1], &[0.0], &mut [0.0; 2])
             .is_err()
     );
-    assert!(exact.grid(&[0.0], &[0.0], &[0.0], &mut [0.0; 2]).is_err());
+    assert!(double.grid(&[0.0], &[0.0], &[0.0], &mut [0.0; 2]).is_err());
 }
 
 #[test]
-fn outside_the_domain_there_is_no_value() {
+fn values_outside_the_domain_are_nan() {
     let brdf = brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0);
-    let domain = all_directions(80.0);
-    let table = IsotropicTable::new(brdf, &domain, 1e-2, 1 << 20).unwrap();
-    let evaluators: [&dyn Evaluator; 5] = [
-        &Exact::new(brdf),
+    let evaluators: [&dyn Evaluator; 4] = [
+        &Double::new(brdf),
         &Single::new(brdf),
         &FittedFresnel::new(brdf, 0.0, 1e-2).unwrap(),
         &Lambertian::new(0.1),
-        &table,
     ];
     for evaluator in evaluators {
         let name = evaluator.name();
@@ -214,7 +212,7 @@ fn outside_the_domain_there_is_no_value() {
 }
 
 #[test]
-fn cosines_that_are_above_one_by_their_rounding_count_as_one() {
+fn cosines_above_one_by_a_rounding_error_are_treated_as_one() {
     let brdf = brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0);
     let above = 1.0_f32.next_up();
     let mut out = [0.0; 2];
@@ -238,7 +236,7 @@ fn a_grid_has_the_values_of_its_points() {
     for family in Family::ALL {
         let brdf = brdf(family, 0.3, 0.1, 0.2, 1.5, 1.3);
         let mut grid = vec![0.0; psi.len() * theta.len()];
-        Exact::new(brdf)
+        Double::new(brdf)
             .grid(&psi, &theta, &phi, &mut grid)
             .unwrap();
         let narrow = |a: &[f64]| a.iter().map(|&x| x as f32).collect::<Vec<_>>();
@@ -267,10 +265,12 @@ fn many_points_have_the_values_of_few() {
     let count = 100_000;
     let probe = Probe::new(&brdf, &all_directions(85.0), Coordinates::Cosines, count, 3);
     let Points::Cosines { psi, theta, phi } = probe.points() else {
-        unreachable!("the coordinates asked for")
+        unreachable!("the probe has the requested coordinates")
     };
     let mut many = vec![0.0; count];
-    Exact::new(brdf).values(&probe.points(), &mut many).unwrap();
+    Double::new(brdf)
+        .values(&probe.points(), &mut many)
+        .unwrap();
     for from in (0..count).step_by(1000) {
         let range = from..from + 1000;
         let mut few = vec![0.0; 1000];
@@ -279,13 +279,13 @@ fn many_points_have_the_values_of_few() {
             theta: &theta[range.clone()],
             phi: &phi[range.clone()],
         };
-        Exact::new(brdf).values(&part, &mut few).unwrap();
+        Double::new(brdf).values(&part, &mut few).unwrap();
         assert_eq!(few, many[range]);
     }
 }
 
 #[test]
-fn parts_that_a_scene_can_do_without_are_left_out() {
+fn specular_and_lambertian_parts_add_up_to_the_whole() {
     let brdf = brdf(Family::Paper, 0.3, 0.1, 0.2, 1.5, 1.0);
     let whole = Single::new(brdf).value(0.3, -0.3, 0.0);
     let specular = SpecularOnly::new(&brdf).value(0.3, -0.3, 0.0);
@@ -294,41 +294,10 @@ fn parts_that_a_scene_can_do_without_are_left_out() {
     assert!((diffuse - 0.1 / PI).abs() < 1e-8);
 }
 
-#[test]
-fn tables_keep_their_tolerance_at_points_of_their_own_and_come_back_from_json() {
-    fn check<E: Evaluator + serde::Serialize + serde::de::DeserializeOwned + PartialEq>(
-        table: &E,
-        brdf: &AnyBrdf,
-        domain: &Domain,
-        tolerance: f64,
-    ) {
-        let probe = Probe::new(brdf, domain, Coordinates::Cosines, 200_000, 11);
-        let error = probe.errors(table).max;
-        assert!(error <= 1.2 * tolerance, "{} {error}", table.name());
-        let json = serde_json::to_string(table).unwrap();
-        assert!(&serde_json::from_str::<E>(&json).unwrap() == table);
-        assert!(table.bytes() < json.len() && json.len() < 32 * table.bytes() + 1000);
-    }
-    let largest = 80_f64.to_radians();
-    for row in PUBLISHED {
-        let brdf = AnyBrdf::Paper(ThreeParameterBrdf::new(row.parameters, row.n).unwrap());
-        let all = all_directions(80.0);
-        let table = IsotropicTable::new(brdf, &all, 1e-3, 1 << 24).unwrap();
-        check(&table, &brdf, &all, 1e-3);
-        let one = Domain::new((0.5, 0.5), (0.0, largest), Azimuth::InPlane).unwrap();
-        let table = IncidenceTable::new(&brdf, 0.5, largest, 1e-3, 1 << 24).unwrap();
-        check(&table, &brdf, &one, 1e-3);
-    }
-    let brdf = brdf(Family::Smith, 0.3, 0.1, 0.4, 1.5, 1.0);
-    let plane = Domain::new((0.0, 1.0), (0.0, 1.2), Azimuth::InPlane).unwrap();
-    let table = InPlaneTable::new(&brdf, (0.0, 1.0), 1.2, 1e-2, 1 << 24).unwrap();
-    check(&table, &brdf, &plane, 1e-2);
-}
-
-/// Prints what the documentation of the evaluators says of `f32`:
+/// Prints the errors in `f32` that the documentation of the evaluators states:
 /// `cargo test -p brdf-core --release --test evaluators -- --nocapture errors_in_f32`.
 #[test]
-fn errors_in_f32_are_what_the_documentation_says() {
+fn errors_in_f32_are_as_documented() {
     println!("largest and rms relative error in f32, k2 = 0.3, kD = 0.1, n = 1.5, p = 1.7");
     for largest_deg in [60.0, 85.0, 89.9] {
         for k1 in [1e-3, 0.01, 0.1, 1.0] {

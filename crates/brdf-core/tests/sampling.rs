@@ -1,7 +1,8 @@
-//! Sampling against its density, as the renderers test it (pbrt, Mitsuba): histograms of drawn
-//! directions against the integral of the density over each bin, by the chi-square test.
+//! Compares the drawn directions with their density, as the renderers pbrt and Mitsuba do: a
+//! chi-square test of histograms against the integral of the density over each bin.
 //!
-//! One set of draws serves the tests over all cases. The generators are seeded: a run repeats.
+//! All tests over all cases use the same draws. The generators are seeded, so that runs are
+//! reproducible.
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use std::sync::LazyLock;
@@ -18,32 +19,32 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 const INCIDENCES_DEG: [f64; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
 const WIDTHS: [f64; 5] = [0.001, 0.03, 0.3, 1.0, 3.0];
 
-/// Draws of one case.
+/// The number of draws of one case.
 const DRAWS: u32 = 1 << 17;
 
-/// The probability that the whole suite rejects a sampler that is right.
+/// The probability that the whole suite rejects a correct sampler.
 const SIGNIFICANCE: f64 = 0.01;
 
-/// Distance of a mean from its expectation, in standard errors, that is beyond chance: once in a
-/// hundred runs of the 155 cases with other seeds, as [`SIGNIFICANCE`] has it.
+/// The largest distance of a mean from its expectation in standard errors. A correct sampler exceeds
+/// it in one of a hundred runs of the 155 cases with other seeds, in agreement with [`SIGNIFICANCE`].
 const STANDARD_ERRORS: f64 = 4.0;
 
-/// Bins with fewer expected counts are pooled: below, the statistic is not distributed as
-/// chi-square.
+/// The least expected count of a bin. Bins with fewer counts are pooled, because their statistic is
+/// not distributed as chi-square.
 const FEWEST_EXPECTED: f64 = 5.0;
 
-/// The azimuth of all sources; none that anything could be aligned with.
+/// The azimuth of all sources, which is not aligned with any bin.
 const SOURCE_AZIMUTH: f64 = 0.7;
 
-/// What the integral of the density over a bin may be wrong by, at most: a hundredth of a count.
+/// The absolute tolerance of the integral of the density over a bin, a hundredth of a count.
 const QUADRATURE_TOLERANCE: f64 = 1e-7;
 
-/// A BRDF at an incidence.
+/// A BRDF at one incidence.
 struct Case {
     name: String,
     brdf: AnyBrdf,
     psi: f64,
-    /// Whether the lobe is wide enough for bins over the view that know nothing of it.
+    /// Whether the lobe is wide enough for bins over the view, which do not follow it.
     wide: bool,
 }
 
@@ -53,10 +54,10 @@ impl Case {
     }
 }
 
-/// What the draws of one case gave.
+/// The results of the draws of one case.
 struct Outcome {
     name: String,
-    /// Of each histogram, the probability of a chi-square as large or larger.
+    /// For each histogram the probability of a chi-square at least as large.
     probabilities: Vec<f64>,
     /// The fraction of draws without a direction, its expectation and its standard error.
     none: Mean,
@@ -71,8 +72,8 @@ struct Mean {
 }
 
 impl Mean {
-    fn is_by_chance(&self) -> bool {
-        // The rounding of the expectation, where there is no scatter.
+    fn is_within_chance(&self) -> bool {
+        // Without scatter, the rounding error of the expectation remains.
         let allowed = STANDARD_ERRORS * self.standard_error + 1e-6 * self.expected + 1e-7;
         (self.value - self.expected).abs() <= allowed
     }
@@ -91,7 +92,7 @@ fn published() -> impl Iterator<Item = (String, AnyBrdf)> {
     })
 }
 
-/// A BRDF whose two parts reflect the same at psi, so that half of the draws are from either lobe.
+/// A BRDF whose two parts have the same reflectance at psi, so that each lobe gets half of the draws.
 fn balanced(family: Family, k1: f64, psi: f64) -> AnyBrdf {
     let with_kd = |kd| {
         let (k2, n, p) = (0.4, 1.5, 1.7);
@@ -180,7 +181,7 @@ fn weight_mean(draws: &[Option<Sample>], case: &Case) -> Mean {
     }
 }
 
-/// The weights of the draws, 0 where there is no direction.
+/// The weights of the draws, with 0 for draws without a direction.
 fn weights(draws: &[Option<Sample>]) -> impl ExactSizeIterator<Item = f64> + Clone {
     draws
         .iter()
@@ -194,8 +195,8 @@ fn mean_and_variance(values: impl ExactSizeIterator<Item = f64> + Clone) -> (f64
     (mean, squares / (count - 1.0))
 }
 
-/// The probability of a chi-square as large as that of the histogram, or larger. Draws without a
-/// direction are one bin more.
+/// The probability of a chi-square at least as large as that of the histogram. Draws without a
+/// direction form an additional bin.
 fn probability(
     draws: &[Option<Sample>],
     expected: &[f64],
@@ -203,7 +204,7 @@ fn probability(
 ) -> f64 {
     let mut counts = vec![0_u32; expected.len() + 1];
     for draw in draws {
-        counts[draw.map_or(expected.len(), |sample| index(&sample.direction))] += 1;
+        counts[draw.map_or(expected.len(), |sample| index(&sample.direction.into()))] += 1;
     }
     let none = 1.0 - expected.iter().sum::<f64>();
     let expected = expected.iter().chain([&none]).map(|p| p * f64::from(DRAWS));
@@ -213,7 +214,8 @@ fn probability(
     distribution.sf(squares.sum())
 }
 
-/// Bins of (expectation, count), those with the smallest expectations made one that is large enough.
+/// Bins of (expectation, count), of which those with the smallest expectations are pooled in one that is
+/// large enough.
 fn pooled(mut bins: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     bins.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut pool = (0.0, 0.0);
@@ -228,8 +230,8 @@ fn pooled(mut bins: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     bins
 }
 
-/// Bins over the facet normal that mirrors source into view, which follow the lobe: its tilt as
-/// asinh(tan alpha / min(k1, 1)), its azimuth from the source's.
+/// Bins over the facet normal that mirrors the source into the view, which follow the lobe. Their
+/// coordinates are asinh(tan alpha / min(k1, 1)) and the azimuth relative to the source.
 struct HalfBins {
     psi: f64,
     width: f64,
@@ -242,7 +244,7 @@ impl HalfBins {
 
     fn new(case: &Case) -> Self {
         let width = case.brdf.parameters().k1.min(1.0);
-        // Steeper facets send no light above the horizon.
+        // Steeper facets reflect no light above the horizon.
         let steepest = (FRAC_PI_4 + 0.5 * case.psi).tan();
         Self {
             psi: case.psi,
@@ -273,7 +275,7 @@ impl HalfBins {
         let tan_alpha = self.width * x.sinh();
         let alpha = tan_alpha.atan();
         let slope = alpha.sin() * alpha.cos().powi(2) * self.width * x.cosh();
-        // The view reaches the horizon where 2 cos gamma cos alpha = cos psi.
+        // The view is on the horizon for 2 cos gamma cos alpha = cos psi.
         let cos_gamma = self.psi.cos() / (2.0 * alpha.cos());
         let cosine = (cos_gamma - self.psi.cos() * alpha.cos()) / (self.psi.sin() * alpha.sin());
         let horizon = cosine.clamp(-1.0, 1.0).acos();
@@ -298,7 +300,7 @@ impl HalfBins {
     }
 }
 
-/// Bins over cos theta and the azimuth of the view from the source's.
+/// Bins over cos theta and the azimuth of the view relative to the source.
 struct ViewBins;
 
 impl ViewBins {
@@ -328,8 +330,8 @@ impl ViewBins {
     }
 }
 
-/// The integrals over a grid of bins: the density is even in the azimuth, so that one side is
-/// computed, [0, pi] in as many ranges as are half of the bins around.
+/// The integrals over a grid of bins. The density is even in the azimuth, so that only the bins in
+/// [0, pi] are computed.
 fn binned(rows: usize, azimuths: usize, integral: impl Fn(usize, [f64; 2]) -> f64) -> Vec<f64> {
     let mut expected = vec![0.0; rows * azimuths];
     for row in 0..rows {
@@ -343,7 +345,7 @@ fn binned(rows: usize, azimuths: usize, integral: impl Fn(usize, [f64; 2]) -> f6
     expected
 }
 
-/// The bin of an azimuth of any turn.
+/// The bin of any azimuth.
 fn azimuth_bin(azimuth: f64, bins: usize) -> usize {
     bin(azimuth.rem_euclid(TAU) / TAU * bins as f64, bins)
 }
@@ -357,8 +359,8 @@ fn bin(position: f64, bins: usize) -> usize {
     (position as usize).min(bins - 1)
 }
 
-/// An integral to an absolute tolerance: Gauss's rule of five points on halves, until those agree
-/// with the whole.
+/// An integral to an absolute tolerance by the Gauss rule of five points, with bisection until the sum
+/// of the halves agrees with the whole.
 fn integral(f: &impl Fn(f64) -> f64, [from, to]: [f64; 2], tolerance: f64) -> f64 {
     refined(f, [from, to], gauss(f, [from, to]), tolerance, 0)
 }
@@ -420,12 +422,15 @@ fn directions_are_drawn_with_their_density() {
 }
 
 #[test]
-fn what_is_not_drawn_is_left_of_the_density() {
+fn the_fraction_without_a_direction_is_one_less_the_integral_of_the_density() {
     for Outcome { name, none, .. } in OUTCOMES.iter() {
         let Mean {
             value, expected, ..
         } = none;
-        assert!(none.is_by_chance(), "{name}: {value}, expected {expected}");
+        assert!(
+            none.is_within_chance(),
+            "{name}: {value}, expected {expected}"
+        );
     }
 }
 
@@ -436,14 +441,14 @@ fn the_mean_weight_is_the_reflectance() {
             value, expected, ..
         } = weight;
         assert!(
-            weight.is_by_chance(),
+            weight.is_within_chance(),
             "{name}: {value}, expected {expected}"
         );
     }
 }
 
 #[test]
-fn a_wrong_density_is_found() {
+fn a_wrong_density_is_detected() {
     let at = |k1| Case {
         name: String::new(),
         brdf: balanced(Family::Paper, k1, 1.0),
@@ -464,7 +469,8 @@ fn a_wrong_density_is_found() {
     assert!(by_half < 1e-6 && by_view < 1e-6, "{by_half} {by_view}");
 }
 
-/// The variances of one draw's estimate of the reflectance, by this sampler and by the cosine.
+/// The variances of the estimate of the reflectance by one draw, with this sampler and with cosine
+/// sampling.
 fn variances(brdf: &AnyBrdf, psi: f64, seed: u64) -> [f64; 2] {
     let lambertian = ModelParameters {
         k2: 0.0,

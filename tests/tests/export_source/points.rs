@@ -172,7 +172,7 @@ fn drawn_errors(brdf: &AnyBrdf, sampler: &Sampler, point: &Point, found: &Found)
         assert!(is_below || drawn.z.abs() < 1e-6, "{point:?} {found:?}");
         return [0.0; 2];
     };
-    let distance = (drawn - sample.direction).norm();
+    let distance = (drawn - Vector3::from(sample.direction)).norm();
     if drawn.z < LARGEST_DEG.to_radians().cos() {
         return [distance, 0.0];
     }

@@ -1,23 +1,25 @@
-//! The model in `f32` with a polynomial for its Fresnel factor.
+//! The model in `f32` with a polynomial as its Fresnel factor.
 
-use super::vector::{Formula, evaluate, native, rounded};
-use super::{Evaluator, LengthError, Points, Precision};
-use crate::AnyBrdf;
+use super::formula::Formula;
+use super::interface::{Evaluator, Precision};
+use super::points::{LengthError, Points};
+use super::vector::{evaluate, native, rounded};
 use crate::brdf::MicrofacetBrdf;
+use crate::direction_pair::DirectionPair;
 use crate::facet::FacetDistribution;
-use crate::family::each;
+use crate::family::{AnyBrdf, each};
 use crate::fresnel::{FresnelFactor, FresnelPolynomial};
-use crate::pair::Pair;
-use crate::real::Real;
+use crate::numeric::Real;
 use crate::shadowing::Shadowing;
 
-/// Coefficients of the two polynomials that there are: that of the lower degree is taken where its
-/// error allows.
+/// The number of coefficients of the polynomial that is used if its error allows it.
 const FEW: usize = 7;
+
+/// The number of coefficients of the polynomial that is used otherwise.
 const MANY: usize = 11;
 
-/// The model in `f32`, with a polynomial in cos gamma for the Fresnel factor instead of its root and
-/// its quotients. How much that changes f_r at the most is [known](Self::fresnel_error_bound).
+/// The model in `f32`, with a polynomial in cos gamma in place of the root and the ratios of the
+/// Fresnel factor. The error of the polynomial has a known [bound](Self::fresnel_error_bound).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedFresnel {
     brdf: AnyBrdf,
@@ -32,8 +34,10 @@ enum Polynomial {
 
 impl FittedFresnel {
     /// An evaluator whose Fresnel factor has a relative error of at most `tolerance` for cos gamma
-    /// in [`least_cos_gamma`, 1]; `None` where no polynomial of at most ten degrees has: for n near
-    /// 1, whose R0 rises too steeply towards grazing.
+    /// in [`least_cos_gamma`, 1].
+    ///
+    /// It is `None` if no polynomial up to the degree 10 is that accurate, which happens for n near
+    /// 1, because R0 then rises too steeply towards grazing.
     pub fn new(brdf: AnyBrdf, least_cos_gamma: f64, tolerance: f64) -> Option<Self> {
         let fresnel = brdf.fresnel();
         let few = FresnelPolynomial::new(&fresnel, least_cos_gamma);
@@ -49,7 +53,7 @@ impl FittedFresnel {
         Some(Self { brdf, polynomial })
     }
 
-    /// The largest relative error of the polynomial in place of the Fresnel factor.
+    /// A bound of the relative error of the polynomial.
     pub fn fresnel_error_bound(&self) -> f64 {
         match &self.polynomial {
             Polynomial::Few(polynomial) => polynomial.error_bound(),
@@ -76,12 +80,12 @@ impl<F: FacetDistribution, S: Shadowing, X: FresnelFactor> Formula
     for WithFresnel<MicrofacetBrdf<F, S>, X>
 {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
+    #[expect(clippy::inline_always, reason = "it is part of vector code")]
+    fn at<R: Real>(&self, pair: &DirectionPair<R>) -> R {
         let half = &pair.half;
-        let fresnel = self.fresnel.quotient(half.length, half.length2);
+        let fresnel = self.fresnel.ratio(half.length, half.length2);
         let (psi, theta) = (pair.cos_psi, pair.cos_theta);
-        [pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))]
+        pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))
     }
 }
 

@@ -2,20 +2,22 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::vector::{Formula, evaluate, native};
-use super::{Evaluator, LengthError, Points, Precision};
-use crate::pair::Pair;
-use crate::real::Real;
+use super::formula::Formula;
+use super::interface::{Evaluator, Precision};
+use super::points::{LengthError, Points};
+use super::vector::{evaluate, native};
+use crate::direction_pair::DirectionPair;
+use crate::numeric::Real;
 
-/// One value, kD/pi, everywhere above the surface: for surfaces without a specular part, and for
-/// ranges of angles in which it is not to be seen.
+/// The constant kD/pi everywhere above the surface, for surfaces without a specular part and for
+/// ranges of angles in which the specular part is negligible.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lambertian {
     kd: f64,
 }
 
 impl Lambertian {
-    /// An evaluator of a surface of the diffuse weight kD.
+    /// An evaluator of a surface with the diffuse weight kD.
     pub fn new(kd: f64) -> Self {
         Self { kd }
     }
@@ -23,9 +25,9 @@ impl Lambertian {
 
 impl Formula for Lambertian {
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "as all that is vector code")]
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; 1] {
-        [pair.if_above_surface(R::of(self.kd * FRAC_1_PI))]
+    #[expect(clippy::inline_always, reason = "it is part of vector code")]
+    fn at<R: Real>(&self, pair: &DirectionPair<R>) -> R {
+        pair.if_above_surface(R::of(self.kd * FRAC_1_PI))
     }
 }
 

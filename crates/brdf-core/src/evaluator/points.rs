@@ -1,19 +1,28 @@
-//! Many points, one array for each coordinate.
+//! Arrays of points, one array for each coordinate.
 
 use std::ops::Range;
 
-use super::LengthError;
-use crate::real::Primitive;
+use crate::numeric::Primitive;
 
-/// Points at which a BRDF is evaluated, as arrays of one coordinate each, all of the same length.
+/// Arrays of different lengths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("an array has {found} elements: expected {expected}")]
+pub struct LengthError {
+    /// The length of the first array, or of the grid that two arrays span.
+    pub expected: usize,
+    /// The length of the array that differs from it.
+    pub found: usize,
+}
+
+/// Points at which a BRDF is evaluated: one array for each coordinate, all of the same length.
 ///
-/// What is outside the domain gives NaN: a zenith angle that is not in [0, 90 deg), a direction that
-/// is not above the surface.
+/// The value at a point outside the domain is NaN. These are points with a zenith angle outside
+/// [0, 90 deg) or a direction that is not above the surface.
 #[derive(Debug, Clone, Copy)]
 pub enum Points<'a, T> {
-    /// The cosines of the incidence angle psi and of the view angle theta, in (0, 1], and that of
-    /// the azimuth phi between them, 1 back towards the source. What is outside by its rounding
-    /// counts as 1 or -1.
+    /// The cosines of the incidence angle psi and of the view angle theta, in (0, 1], and of the
+    /// azimuth phi between them, which is 1 back towards the source. Cosines beyond 1 or -1 by a
+    /// rounding error are treated as 1 or -1.
     Cosines {
         /// cos psi.
         psi: &'a [T],
@@ -22,7 +31,7 @@ pub enum Points<'a, T> {
         /// cos phi.
         phi: &'a [T],
     },
-    /// psi, signed theta and phi in radians, as of [`Geometry::new`](crate::Geometry::new).
+    /// psi, signed theta and phi in radians, as in [`Geometry::new`](crate::Geometry::new).
     Angles {
         /// psi.
         psi: &'a [T],
@@ -31,7 +40,7 @@ pub enum Points<'a, T> {
         /// phi.
         phi: &'a [T],
     },
-    /// Unit vectors away from the surface, x, y and z each, z along its normal.
+    /// Unit vectors away from the surface, as the arrays of x, y and z, with z along its normal.
     Directions {
         /// Towards the source.
         source: [&'a [T]; 3],
@@ -41,9 +50,11 @@ pub enum Points<'a, T> {
 }
 
 impl<'a, T: Primitive> Points<'a, T> {
-    /// How many points there are.
+    /// The number of points.
     ///
-    /// Errors: arrays of different lengths.
+    /// # Errors
+    ///
+    /// [`LengthError`] if the arrays have different lengths.
     pub fn len(&self) -> Result<usize, LengthError> {
         let (arrays, count) = self.arrays();
         let expected = arrays[0].len();
@@ -56,12 +67,12 @@ impl<'a, T: Primitive> Points<'a, T> {
         }
     }
 
-    /// Whether there is no point.
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.arrays().0[0].is_empty()
     }
 
-    /// Checks that all arrays, and an array of as many values, have the same length.
+    /// Checks that all arrays and an array of `values` values have the same length.
     pub(crate) fn check(&self, values: usize) -> Result<(), LengthError> {
         let expected = self.len()?;
         if values == expected {
@@ -74,7 +85,7 @@ impl<'a, T: Primitive> Points<'a, T> {
         }
     }
 
-    /// Some of the points.
+    /// The points of a range of indices.
     pub(crate) fn part(&self, range: Range<usize>) -> Self {
         self.with(|array| &array[range.clone()])
     }
@@ -99,7 +110,7 @@ impl<'a, T: Primitive> Points<'a, T> {
         }
     }
 
-    /// The arrays, and how many of them there are.
+    /// The arrays, and the number of those that are used.
     fn arrays(&self) -> ([&'a [T]; 6], usize) {
         match *self {
             Self::Cosines { psi, theta, phi } | Self::Angles { psi, theta, phi } => {
@@ -113,11 +124,28 @@ impl<'a, T: Primitive> Points<'a, T> {
     }
 }
 
-/// How many points are taken at once where that needs arrays: they stay in the nearest cache.
-pub(crate) const BLOCK: usize = 512;
+/// Checks the lengths of the arrays of a grid.
+pub(crate) fn check_grid(
+    psi: usize,
+    theta: usize,
+    phi: usize,
+    out: usize,
+) -> Result<(), LengthError> {
+    let lengths = [(theta, phi), (psi * theta, out)];
+    match lengths
+        .into_iter()
+        .find(|(expected, found)| expected != found)
+    {
+        Some((expected, found)) => Err(LengthError { expected, found }),
+        None => Ok(()),
+    }
+}
 
-/// Works on a block of points at a time.
-pub(crate) fn in_blocks<T: Primitive>(
+/// The number of points that are converted at once, so that their arrays stay in the nearest cache.
+const BLOCK: usize = 512;
+
+/// Does the work in blocks of points.
+fn in_blocks<T: Primitive>(
     points: &Points<T>,
     out: &mut [T],
     mut work: impl FnMut(&Points<T>, &mut [T]),
@@ -128,7 +156,7 @@ pub(crate) fn in_blocks<T: Primitive>(
     }
 }
 
-/// Evaluates points of one precision by an evaluator of the other, block by block.
+/// Evaluates points of one precision by a function of another precision, block by block.
 pub(crate) fn converted<T: Primitive, U: Primitive>(
     points: &Points<T>,
     out: &mut [T],

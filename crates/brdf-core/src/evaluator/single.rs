@@ -1,16 +1,15 @@
 //! The model in `f32`, with or without its Lambertian part.
 
-use super::exact::check_grid;
+use super::interface::{Evaluator, Precision};
+use super::points::{LengthError, Points, check_grid};
 use super::vector::{evaluate, grid, native, rounded};
-use super::{Evaluator, LengthError, Points, Precision};
-use crate::AnyBrdf;
-use crate::family::each;
+use crate::family::{AnyBrdf, each};
 
-/// The model in `f32`: the same formula, whose forms without cancellation are what makes that
-/// possible.
+/// The model in `f32` at many points, by the same formula, which is accurate in `f32` because no term
+/// of it cancels.
 ///
-/// Domain: k1 in [1e-4, 1e4], n up to 1e3, cosines of the zenith angles from 1e-3 (89.94 deg) on;
-/// beyond, products leave the range of `f32`.
+/// Domain: k1 in [1e-4, 1e4], n up to 1e3 and cosines of the zenith angles from 1e-3 (89.94 deg);
+/// outside, products exceed the range of `f32`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Single {
     brdf: AnyBrdf,
@@ -22,7 +21,11 @@ impl Single {
         Self { brdf }
     }
 
-    /// [`Exact::grid`](super::Exact::grid) in `f32`.
+    /// [`Double::grid`](super::Double::grid) in `f32`.
+    ///
+    /// # Errors
+    ///
+    /// [`LengthError`] if theta and phi, or `out` and the grid, have different lengths.
     pub fn grid(
         &self,
         psi: &[f32],
@@ -56,8 +59,8 @@ impl Evaluator for Single {
     }
 }
 
-/// The specular part alone, in `f32`: for surfaces without a Lambertian part, and for scenes where
-/// it is not to be seen beside the specular one.
+/// The specular part alone in `f32`, for surfaces without a Lambertian part and for scenes in which it
+/// is negligible beside the specular part.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpecularOnly {
     specular: Single,

@@ -1,184 +1,94 @@
-//! A formula at many points: in the widest vectors that the processor has, found when the program
-//! runs, and on all its cores where that pays.
+//! The evaluation of a formula at many points: in the widest vectors of the processor, and on several
+//! threads if that is faster.
 //!
-//! A loop over a formula without calls and branches becomes vector code by itself; it is compiled
-//! for several kinds of processor, and one of them is chosen at each call.
+//! A loop over a formula without calls and branches becomes vector code by itself.
 
 #![expect(
     clippy::inline_always,
     clippy::needless_range_loop,
-    reason = "what is not inlined is not compiled for the processor at hand, and over iterators the \
-              last points are not done in vectors"
+    reason = "a function that is not inlined is not compiled for the present processor, and with \
+              iterators the last points are not evaluated in vectors"
 )]
 
-use std::sync::LazyLock;
+use super::formula::Formula;
+use super::points::{LengthError, Points, converted};
+use super::processor::{self, Kernel};
+use crate::direction_pair::{DirectionPair, Zenith};
+use crate::numeric::{Fused, Primitive, Real, sin2_cos2_of_any_half};
+use crate::parallel;
 
-use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
-
-use super::LengthError;
-use super::points::{Points, converted};
-use crate::pair::{Pair, Zenith};
-use crate::real::{Fused, Primitive, Real};
-use crate::trigonometry::sin2_cos2_of_any_half;
-
-/// From this number of points on, several cores share the work: of the fastest formula, 1 ns a point,
-/// two cores took 24 us for 16 Ki points, one 16 us; for 32 Ki points 28 us and 32 us
+/// The number of points from which on several threads share the work.
+///
+/// For the fastest formula, which takes 1 ns for each point, two threads took 24 us for 16 Ki points
+/// and one thread 16 us; for 32 Ki points they took 28 us and 32 us
 /// (`cargo bench -p brdf-core --bench evaluators`).
 pub const PARALLEL_FROM: usize = 1 << 15;
 
-/// The least points of one piece of the work.
-const LEAST_PIECE: usize = 1 << 13;
+/// The least number of points of one chunk of the work.
+const LEAST_CHUNK: usize = 1 << 13;
 
-/// Pieces for each thread: enough for one to help another out, and no more, since at the beginning of
-/// a piece the memory is waited for.
-const PIECES_A_THREAD: usize = 8;
-
-/// A formula of a pair of directions.
-///
-/// It is copied into the loop: what is behind a reference would be read again at each point.
-pub(crate) trait Formula<const N: usize = 1>: Copy + Send + Sync {
-    /// Its values in any kind of number.
-    fn at<R: Real>(&self, pair: &Pair<R>) -> [R; N];
-}
+/// The number of chunks for each thread. More than one lets an idle thread take over work; each
+/// begins with waiting for the memory, so that there should not be more.
+const CHUNKS_PER_THREAD: usize = 8;
 
 /// A function of an index into arrays.
-trait Indexed<T: Primitive, const N: usize>: Copy {
-    /// The same for the indices below n, which all arrays have. Said within the loop's own function,
-    /// it frees the loop from looking at the lengths of the arrays again.
+trait Indexed<T: Primitive>: Copy {
+    /// The same function with all arrays cut to the length n. If this is done within the function of
+    /// the loop, the loop needs no checks of the lengths.
     fn below(self, n: usize) -> Self;
 
-    fn at<R: Real<Stored = T>>(&self, index: usize) -> [R; N];
+    /// The value at an index below n.
+    fn at<R: Real<Stored = T>>(&self, index: usize) -> R;
 }
 
-/// What the processor can do, asked once.
-static PROCESSOR: LazyLock<Arch> = LazyLock::new(Arch::new);
-
-/// What the evaluators found in this processor: the widest vectors that they use.
-pub fn vector_unit() -> &'static str {
-    match *PROCESSOR {
-        #[cfg(target_arch = "x86_64")]
-        Arch::V3(_) => "AVX2",
-        #[cfg(target_arch = "x86_64")]
-        Arch::V4(_) => "AVX-512",
-        #[cfg(target_arch = "aarch64")]
-        Arch::Neon(_) => "NEON",
-        _ => "the baseline",
-    }
+/// Sets each element of `out` to the value of f at its index.
+fn fill<T: Primitive>(f: impl Indexed<T>, out: &mut [T]) {
+    processor::run(Fill { f, out });
 }
 
-/// Array k of out gets value k of f at each index, in vectors.
-fn fill<T: Primitive, const N: usize>(f: impl Indexed<T, N>, out: [&mut [T]; N]) {
-    fill_by(*PROCESSOR, f, out);
-}
-
-/// The same as a processor of less than its abilities would do it.
-fn fill_by<T: Primitive, const N: usize>(arch: Arch, f: impl Indexed<T, N>, out: [&mut [T]; N]) {
-    if matches!(arch, Arch::Scalar) {
-        Loop::<_, _, N, false> { f, out }.run();
-    } else {
-        arch.dispatch(Loop::<_, _, N, true> { f, out });
-    }
-}
-
-/// The loop of [`fill`]; FUSED where the processor multiplies and adds at once.
-struct Loop<'a, F, T, const N: usize, const FUSED: bool> {
+/// The loop of [`fill`].
+struct Fill<'a, F, T> {
     f: F,
-    out: [&'a mut [T]; N],
+    out: &'a mut [T],
 }
 
-impl<T, F, const N: usize, const FUSED: bool> Loop<'_, F, T, N, FUSED>
-where
-    T: Primitive,
-    F: Indexed<T, N>,
-{
+impl<T: Primitive, F: Indexed<T>> Kernel for Fill<'_, F, T> {
     #[inline(always)]
-    fn run(self) {
-        let n = self.out[0].len();
+    fn run<const FUSED: bool>(self) {
+        let n = self.out.len();
         let f = self.f.below(n);
-        let out = self.out.map(|out| &mut out[..n]);
-        if N == 1 {
-            for i in 0..n {
-                out[0][i] = at::<_, _, N, FUSED>(&f, i)[0];
-            }
-        } else {
-            in_columns::<_, _, N, FUSED>(&f, out);
+        let out = &mut self.out[..n];
+        for i in 0..n {
+            out[i] = if FUSED {
+                f.at::<Fused<T>>(i).store()
+            } else {
+                f.at::<T>(i).store()
+            };
         }
     }
 }
 
-#[inline(always)]
-fn at<T, F, const N: usize, const FUSED: bool>(f: &F, i: usize) -> [T; N]
-where
-    T: Primitive,
-    F: Indexed<T, N>,
-{
-    if FUSED {
-        f.at::<Fused<T>>(i).map(Real::store)
-    } else {
-        f.at::<T>(i)
-    }
-}
-
-/// Several values a point, by way of arrays of its own: of several that are handed in, the compiler
-/// would have to find out first that they do not overlap.
-#[inline(always)]
-fn in_columns<T, F, const N: usize, const FUSED: bool>(f: &F, mut out: [&mut [T]; N])
-where
-    T: Primitive,
-    F: Indexed<T, N>,
-{
-    const LENGTH: usize = 64;
-    let n = out[0].len();
-    let mut from = 0;
-    while from < n {
-        let length = LENGTH.min(n - from);
-        let mut columns = [[T::default(); LENGTH]; N];
-        for i in 0..length {
-            let values = at::<_, _, N, FUSED>(f, from + i);
-            for k in 0..N {
-                columns[k][i] = values[k];
-            }
-        }
-        for (out, column) in out.iter_mut().zip(&columns) {
-            out[from..from + length].copy_from_slice(&column[..length]);
-        }
-        from += length;
-    }
-}
-
-impl<T, F, const N: usize, const FUSED: bool> WithSimd for Loop<'_, F, T, N, FUSED>
-where
-    T: Primitive,
-    F: Indexed<T, N>,
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.run();
-    }
-}
-
-/// Checks the lengths and works on pieces of the points, on several cores where there are many.
+/// Checks the lengths of the arrays and does the work in chunks, on several threads if there are many
+/// points.
 pub(crate) fn native<T: Primitive>(
     points: &Points<T>,
     out: &mut [T],
     work: impl Fn(&Points<T>, &mut [T]) + Sync,
 ) -> Result<(), LengthError> {
     points.check(out.len())?;
-    let threads = rayon::current_num_threads();
+    let threads = parallel::threads();
     if out.len() < PARALLEL_FROM || threads == 1 {
         work(points, out);
         return Ok(());
     }
-    let length = LEAST_PIECE.max(out.len() / (PIECES_A_THREAD * threads));
-    let pieces = out.par_chunks_mut(length).enumerate();
-    pieces.for_each(|(i, out)| work(&points.part(i * length..i * length + out.len()), out));
+    let length = LEAST_CHUNK.max(out.len() / (CHUNKS_PER_THREAD * threads));
+    parallel::for_each_chunk(out, length, |i, out| {
+        work(&points.part(i * length..i * length + out.len()), out);
+    });
     Ok(())
 }
 
-/// The same for work that is done in numbers of another precision.
+/// [`native`] for work that is done in another precision.
 pub(crate) fn rounded<T: Primitive, U: Primitive>(
     points: &Points<T>,
     out: &mut [T],
@@ -187,17 +97,8 @@ pub(crate) fn rounded<T: Primitive, U: Primitive>(
     native(points, out, |points, out| converted(points, out, &work))
 }
 
-/// The formula at the points. All arrays have one length.
+/// Evaluates the formula at the points. All arrays have the same length.
 pub(crate) fn evaluate<T: Primitive>(formula: impl Formula, points: &Points<T>, out: &mut [T]) {
-    evaluate_all(formula, points, [out]);
-}
-
-/// The same for a formula of several values, an array for each.
-pub(crate) fn evaluate_all<T: Primitive, const N: usize>(
-    formula: impl Formula<N>,
-    points: &Points<T>,
-    out: [&mut [T]; N],
-) {
     match *points {
         Points::Cosines { psi, theta, phi } => {
             let cosines = [psi, theta, phi];
@@ -229,7 +130,7 @@ struct Cosines<'a, K, T> {
     cosines: [&'a [T]; 3],
 }
 
-impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Cosines<'_, K, T> {
+impl<K: Formula, T: Primitive> Indexed<T> for Cosines<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -239,10 +140,11 @@ impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Cosines<'_, 
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; N] {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
         let [psi, theta, phi] = self.cosines;
         let (psi, theta, phi) = (R::load(psi[i]), R::load(theta[i]), R::load(phi[i]));
-        self.formula.at(&Pair::from_cosines(psi, theta, phi))
+        self.formula
+            .at(&DirectionPair::from_cosines(psi, theta, phi))
     }
 }
 
@@ -252,7 +154,7 @@ struct Angles<'a, K, T> {
     angles: [&'a [T]; 3],
 }
 
-impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Angles<'_, K, T> {
+impl<K: Formula, T: Primitive> Indexed<T> for Angles<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -262,10 +164,11 @@ impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Angles<'_, K
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; N] {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
         let [psi, theta, phi] = self.angles;
         let (psi, theta, phi) = (R::load(psi[i]), R::load(theta[i]), R::load(phi[i]));
-        self.formula.at(&Pair::from_angles(psi, theta, phi))
+        self.formula
+            .at(&DirectionPair::from_angles(psi, theta, phi))
     }
 }
 
@@ -276,7 +179,7 @@ struct Directions<'a, K, T> {
     view: [&'a [T]; 3],
 }
 
-impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Directions<'_, K, T> {
+impl<K: Formula, T: Primitive> Indexed<T> for Directions<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -287,30 +190,27 @@ impl<K: Formula<N>, T: Primitive, const N: usize> Indexed<T, N> for Directions<'
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; N] {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
         let source = self.source.map(|array| R::load(array[i]));
         let view = self.view.map(|array| R::load(array[i]));
-        self.formula.at(&Pair::from_directions(source, view))
+        self.formula
+            .at(&DirectionPair::from_directions(source, view))
     }
 }
 
-/// Azimuths beyond a whole turn are taken one by one, with the library's sine.
-fn far_angles<T: Primitive, const N: usize>(
-    formula: impl Formula<N>,
-    [psi, theta, phi]: [&[T]; 3],
-    mut out: [&mut [T]; N],
-) {
+/// Evaluates the formula at angles of which some azimuths exceed a whole turn: point by point, with
+/// the sine of the library.
+fn far_angles<T: Primitive>(formula: impl Formula, [psi, theta, phi]: [&[T]; 3], out: &mut [T]) {
     for i in 0..psi.len() {
         let view = View::new(theta[i], phi[i]);
-        let pair = Pair::from_zeniths(Zenith::checked(psi[i]), view.zenith, view.cos2_half_phi);
-        for (out, value) in out.iter_mut().zip(formula.at(&pair)) {
-            out[i] = value;
-        }
+        let pair =
+            DirectionPair::from_zeniths(Zenith::checked(psi[i]), view.zenith, view.cos2_half_phi);
+        out[i] = formula.at(&pair);
     }
 }
 
-/// The formula for every view at each incidence: out has the views of the first incidence, then
-/// those of the second. The sines and cosines are worked out once for each angle.
+/// Evaluates the formula for every view at each incidence: `out` contains the views of the first
+/// incidence, then those of the second. The sines and cosines are computed once for each angle.
 pub(crate) fn grid<T: Primitive>(
     formula: impl Formula,
     psi: &[T],
@@ -324,29 +224,27 @@ pub(crate) fn grid<T: Primitive>(
         .map(|(&t, &p)| View::new(t, p))
         .collect();
     let views = ViewArrays::of(&views);
-    let row = |(&psi, out): (&T, &mut [T])| {
-        let source = Zenith::checked(psi);
+    let columns = theta.len().max(1);
+    let row = |i: usize, out: &mut [T]| {
         let row = Row {
             formula,
-            source,
+            source: Zenith::checked(psi[i]),
             angle: &views.angle,
             sin: &views.sin,
             cos: &views.cos,
             cos2_half_phi: &views.cos2_half_phi,
         };
-        fill(row, [out]);
+        fill(row, out);
     };
-    let (columns, count) = (theta.len().max(1), out.len());
-    if count < PARALLEL_FROM {
-        psi.iter().zip(out.chunks_mut(columns)).for_each(row);
+    if out.len() < PARALLEL_FROM {
+        let rows = out.chunks_mut(columns).enumerate();
+        rows.for_each(|(i, out)| row(i, out));
     } else {
-        psi.par_iter()
-            .zip(out.par_chunks_mut(columns))
-            .for_each(row);
+        parallel::for_each_chunk(out, columns, row);
     }
 }
 
-/// One view: its zenith angle without sign, and cos^2(phi/2) of the azimuth that belongs to it.
+/// A view: the magnitude of its zenith angle and cos^2(phi/2) of the azimuth that belongs to it.
 struct View<T> {
     zenith: Zenith<T>,
     cos2_half_phi: T,
@@ -363,7 +261,7 @@ impl<T: Primitive> View<T> {
     }
 }
 
-/// The views, an array for each number.
+/// Views as one array for each number.
 struct ViewArrays<T> {
     angle: Vec<T>,
     sin: Vec<T>,
@@ -383,7 +281,7 @@ impl<T: Primitive> ViewArrays<T> {
     }
 }
 
-/// The views of one incidence.
+/// The formula for the views of one incidence.
 #[derive(Clone, Copy)]
 struct Row<'a, K, T> {
     formula: K,
@@ -394,7 +292,7 @@ struct Row<'a, K, T> {
     cos2_half_phi: &'a [T],
 }
 
-impl<K: Formula, T: Primitive> Indexed<T, 1> for Row<'_, K, T> {
+impl<K: Formula, T: Primitive> Indexed<T> for Row<'_, K, T> {
     #[inline(always)]
     fn below(self, n: usize) -> Self {
         Self {
@@ -407,7 +305,7 @@ impl<K: Formula, T: Primitive> Indexed<T, 1> for Row<'_, K, T> {
     }
 
     #[inline(always)]
-    fn at<R: Real<Stored = T>>(&self, i: usize) -> [R; 1] {
+    fn at<R: Real<Stored = T>>(&self, i: usize) -> R {
         let load = |zenith: Zenith<T>| Zenith {
             angle: R::load(zenith.angle),
             sin: R::load(zenith.sin),
@@ -419,18 +317,21 @@ impl<K: Formula, T: Primitive> Indexed<T, 1> for Row<'_, K, T> {
             cos: self.cos[i],
         };
         let cos2_half_phi = R::load(self.cos2_half_phi[i]);
-        let pair = Pair::from_zeniths(load(self.source), load(view), cos2_half_phi);
+        let pair = DirectionPair::from_zeniths(load(self.source), load(view), cos2_half_phi);
         self.formula.at(&pair)
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "simd"))]
 mod tests {
+    use pulp::Arch;
+
+    use super::super::processor::{PROCESSOR, run_on};
     use super::*;
     use crate::family::each;
     use crate::{AnyBrdf, Family, ModelParameters};
 
-    /// The processors that this one can stand for.
+    /// The kinds of processor that this one can run as.
     fn processors() -> Vec<Arch> {
         let mut all = vec![Arch::Scalar, *PROCESSOR];
         #[cfg(target_arch = "x86_64")]
@@ -447,7 +348,10 @@ mod tests {
         let angles = angles.each_ref().map(Vec::as_slice);
         let on = |arch| {
             let mut out = vec![T::narrow(0.0); 333];
-            each!(*brdf, formula => fill_by(arch, Angles { formula, angles }, [&mut out]));
+            each!(*brdf, formula => {
+                let f = Angles { formula, angles };
+                run_on(arch, Fill { f, out: &mut out });
+            });
             out
         };
         processors().into_iter().map(on).collect()
@@ -462,7 +366,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_of_processor_gives_the_same_but_for_roundings() {
+    fn every_kind_of_processor_gives_the_same_values_up_to_rounding() {
         for family in Family::ALL {
             let at = ModelParameters {
                 k2: 0.3,

@@ -2,13 +2,12 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Elementary as _, Ratio, Real};
 
 /// The distribution of a surface with normally distributed slopes (Beckmann and Spizzichino 1963;
-/// Cook and Torrance 1982, eq. 3), its root mean square slope times sqrt(2) being the width k1:
+/// Cook and Torrance 1982, eq. 3). The width k1 is sqrt(2) times the root mean square slope:
 ///
 /// ```text
 /// f(alpha) / f(0) = exp(-tan^2 alpha / k1^2) / cos^4 alpha,   f(0) = 1 / (pi k1^2)
@@ -20,7 +19,7 @@ pub struct Beckmann {
 }
 
 impl Beckmann {
-    /// The distribution of width k1 > 0, which is not checked here.
+    /// The distribution of width k1 > 0, which is not checked.
     pub fn new(k1: f64) -> Self {
         Self {
             k1,
@@ -35,10 +34,10 @@ impl FacetDistribution for Beckmann {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
         let along2 = half.along * half.along;
         let exponent = -half.tan2_alpha() * R::of(self.reciprocal_k1_squared);
-        Quotient {
+        Ratio {
             numerator: exponent.exp() * (half.length2 * half.length2),
             denominator: along2 * along2,
         }

@@ -2,21 +2,21 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
-/// The paper's facet distribution: in polar coordinates an ellipsoid of revolution that touches
-/// the surface at the origin, k1 being its transverse axis over its axis along the normal.
+/// The paper's facet distribution, eq. (2) of Li, Yan and Wu (2002): in polar coordinates an
+/// ellipsoid of revolution that touches the surface at the origin, where k1 is the ratio of its
+/// transverse axis to its axis along the normal.
 ///
 /// ```text
 /// f(alpha) / f(0) = k1^2 cos alpha / (1 + (k1^2 - 1) cos^2 alpha)
 ///                 = sec alpha / (tan^2 alpha / k1^2 + 1)
 /// ```
 ///
-/// A small k1 is a narrow lobe, k1 = 1 the sphere cos alpha. The second form has no difference
-/// and is the one that is evaluated. (Eq. 2 of Li, Yan and Wu 2002.)
+/// A small k1 is a narrow lobe, and k1 = 1 is the sphere cos alpha. The second form, which has no
+/// difference, is the one that is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {
     k1: f64,
@@ -25,9 +25,9 @@ pub struct Ellipsoid {
 }
 
 impl Ellipsoid {
-    /// The distribution of width k1 > 0.
+    /// The distribution of width k1 > 0, which is not checked.
     ///
-    /// k1 is not checked here; [`Parameters`](crate::Parameters) does that.
+    /// [`Parameters`](crate::Parameters) checks it.
     pub fn new(k1: f64) -> Self {
         Self {
             k1,
@@ -43,9 +43,9 @@ impl FacetDistribution for Ellipsoid {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
         let along2 = half.along * half.along;
-        Quotient {
+        Ratio {
             numerator: half.along * half.length,
             denominator: half
                 .across2
@@ -61,19 +61,18 @@ impl FacetDistribution for Ellipsoid {
     }
 
     /// With x = cos alpha the integral of x^2 k1^2 / (1 + (k1^2 - 1) x^2) over [0, 1] has a closed
-    /// form; within 0.1 of k1 = 1 it is summed as a series in 1 - k1^2, since the closed form
-    /// loses digits there.
+    /// form. For |1 - k1^2| < 0.1, where the closed form loses digits, it is a series in 1 - k1^2.
     fn peak_density(&self) -> f64 {
         let deviation = 1.0 - self.k1_squared;
         let integral = if deviation.abs() < 0.1 {
-            // Sum of k1^2 deviation^m / (2m + 3): 16 terms leave less than 1e-17.
+            // The sum of k1^2 deviation^m / (2m + 3); 16 terms are exact to 1e-17.
             self.k1_squared
                 * (0..16)
                     .rev()
                     .fold(0.0, |sum, m| sum * deviation + 1.0 / f64::from(2 * m + 3))
         } else if deviation > 0.0 {
             let root = deviation.sqrt();
-            // artanh(root) = ln((1 + root)/k1), without 1 - root.
+            // artanh(root) = ln((1 + root)/k1), which avoids 1 - root.
             self.k1_squared / deviation * (((1.0 + root) / self.k1).ln() / root - 1.0)
         } else {
             let root = (-deviation).sqrt();
@@ -88,7 +87,7 @@ impl FacetDistribution for Ellipsoid {
     /// tan^2 alpha = k1^2 (1 - e^(-u L)) / (e^((1-u) L) - 1),   u/(1-u) at k1 = 1
     /// ```
     ///
-    /// since the density of t = tan^2 alpha is a multiple of 1/((1 + t)(k1^2 + t)), so that
+    /// because the density of t = tan^2 alpha is proportional to 1/((1 + t)(k1^2 + t)), so that
     /// u L = ln(k1^2 (1 + t)/(k1^2 + t)).
     fn sample_tan2_alpha(&self, u: f64) -> f64 {
         let logarithm = self.k1_squared.ln();
@@ -99,11 +98,13 @@ impl FacetDistribution for Ellipsoid {
         self.k1_squared * above / ((1.0 - u) * logarithm).exp_m1()
     }
 
+    /// f(alpha)/f(0) divided by its integral N over the hemisphere,
+    ///
     /// ```text
     /// p(alpha) = f(alpha)/f(0) / N,   N = pi k1^2 ln(k1^2) / (k1^2 - 1),   pi at k1 = 1
     /// ```
     fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        // Next to k1 = 1 the difference is exact, and so is the logarithm of the same number.
+        // The difference is exact next to k1 = 1, and the logarithm is that of the same number.
         let deviation = self.k1_squared - 1.0;
         let mean_logarithm = if deviation == 0.0 {
             1.0
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_peak_density_has_no_step_where_its_forms_meet() {
+    fn the_peak_density_is_continuous_between_its_forms() {
         for deviation in [0.1_f64, -0.1] {
             let k1 = (1.0 - deviation).sqrt();
             let below = Ellipsoid::new(k1 * (1.0 - 1e-9)).peak_density();

@@ -2,20 +2,19 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
-/// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33),
-/// its roughness alpha_g being the width k1:
+/// The distribution of Trowbridge and Reitz (1975), called GGX by Walter et al. (EGSR 2007, eq. 33).
+/// The width k1 is its roughness alpha_g:
 ///
 /// ```text
 /// f(alpha) / f(0) = (k1^2 / (sin^2 alpha + k1^2 cos^2 alpha))^2
 ///                 = (k1^2 sec^2 alpha / (tan^2 alpha + k1^2))^2,   f(0) = 1 / (pi k1^2)
 /// ```
 ///
-/// Not the paper's: eq. (2) has the first power, and cos alpha on top.
+/// The paper's eq. (2) differs from it by the first power and the factor cos alpha.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ggx {
     k1: f64,
@@ -23,7 +22,7 @@ pub struct Ggx {
 }
 
 impl Ggx {
-    /// The distribution of width k1 > 0, which is not checked here.
+    /// The distribution of width k1 > 0, which is not checked.
     pub fn new(k1: f64) -> Self {
         Self {
             k1,
@@ -38,12 +37,12 @@ impl FacetDistribution for Ggx {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
         let k1_squared = R::of(self.k1_squared);
         let along2 = half.along * half.along;
         let above = k1_squared * half.length2;
         let below = k1_squared.mul_add(along2, half.across2);
-        Quotient {
+        Ratio {
             numerator: above * above,
             denominator: below * below,
         }

@@ -1,25 +1,19 @@
-//! The paper's distribution with its exponent set free.
+//! The paper's distribution with a free exponent.
 
 use std::f64::consts::{PI, TAU};
 
-use super::FacetDistribution;
-use crate::pair::HalfVector;
-use crate::quadrature::integrate;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::distribution::FacetDistribution;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Elementary as _, Ratio, Real, integrate};
 
-/// The smallest and the largest exponent p. At the larger, the widest distribution, which rises
-/// like k1^(2 p) towards grazing tilts, still is within the range of numbers.
-pub const P_DOMAIN: (f64, f64) = (0.1, 16.0);
-
-/// Eq. (2) with an exponent p on its denominator:
+/// Eq. (2) with the exponent p:
 ///
 /// ```text
 /// f(alpha) / f(0) = cos alpha (k1^2 / (sin^2 alpha + k1^2 cos^2 alpha))^p
 /// ```
 ///
-/// p = 1 is the paper's distribution, p = 2 is GGX times cos alpha, and p to infinity with
-/// k1^2 = p m^2 goes to exp(-tan^2 alpha / m^2) for small tilts. The larger p, the shorter the tail.
+/// p = 1 is the paper's distribution and p = 2 is GGX times cos alpha. For p to infinity with
+/// k1^2 = p m^2 the limit is exp(-tan^2 alpha / m^2) at small tilts. A larger p has a shorter tail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Power {
     k1: f64,
@@ -28,7 +22,7 @@ pub struct Power {
 }
 
 impl Power {
-    /// The distribution of width k1 > 0 and exponent p > 0, which are not checked here.
+    /// The distribution of width k1 > 0 and exponent p > 0, which are not checked.
     pub fn new(k1: f64, p: f64) -> Self {
         Self {
             k1,
@@ -37,8 +31,8 @@ impl Power {
         }
     }
 
-    /// ln(k1^2 / (sin^2 alpha + k1^2 cos^2 alpha)), without a loss of digits next to the peak:
-    /// the fraction is 1 + (k1^2 - 1) tan^2 alpha / (tan^2 alpha + k1^2).
+    /// ln(k1^2 / (sin^2 alpha + k1^2 cos^2 alpha)), accurate also next to the peak, where the
+    /// fraction is evaluated as 1 + (k1^2 - 1) tan^2 alpha / (tan^2 alpha + k1^2).
     #[inline]
     fn logarithm<R: Real>(&self, half: &HalfVector<R>) -> R {
         let k1_squared = R::of(self.k1_squared);
@@ -48,7 +42,7 @@ impl Power {
         let next_to_the_peak = excess.abs() < R::of(0.5);
         let (zero, one) = (R::of(0.0), R::of(1.0));
         let fraction = R::select(next_to_the_peak, one + excess, fraction);
-        // What the rounding of 1 + excess took away.
+        // The rounding error of 1 + excess.
         let rest = (excess - (fraction - one)) / fraction;
         fraction.ln() + R::select(next_to_the_peak, rest, zero)
     }
@@ -64,8 +58,8 @@ impl FacetDistribution for Power {
     }
 
     #[inline]
-    fn quotient<R: Real>(&self, half: &HalfVector<R>) -> Quotient<R> {
-        Quotient {
+    fn ratio<R: Real>(&self, half: &HalfVector<R>) -> Ratio<R> {
+        Ratio {
             numerator: (R::of(self.p) * self.logarithm(half)).exp() * half.along,
             denominator: half.length,
         }
@@ -81,12 +75,12 @@ impl FacetDistribution for Power {
     /// The logarithm of the fraction times the value.
     #[inline]
     fn derivative_p(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
-        let half = HalfVector::of_tilt(tan2_alpha, sec_alpha);
-        self.logarithm(&half) * self.quotient(&half).value()
+        let half = HalfVector::from_tilt(tan2_alpha, sec_alpha);
+        self.logarithm(&half) * self.ratio(&half).value()
     }
 
     /// The normalisation integral, 2 pi times that of f(alpha)/f(0) cos alpha sin alpha d alpha, by
-    /// quadrature in u, tan alpha = w sinh u: w is min(k1, 1), or less where a large p narrows the
+    /// quadrature in u with tan alpha = w sinh u. w is min(k1, 1), or less if a large p narrows the
     /// peak.
     fn peak_density(&self) -> f64 {
         let width = (self.k1 / self.p.max(1.0).sqrt()).min(1.0);
@@ -103,16 +97,16 @@ impl FacetDistribution for Power {
     }
 
     /// With L = ln k1^2, s = 1 - p and t = tan^2 alpha, the fraction
-    /// q = (k1^2 + t)/(k1^2 (1 + t)) goes from 1 to 1/k1^2. dq is a multiple of dt / (1 + t)^2, and
-    /// the density of t one of q^(-p) / (1 + t)^2, so that u is linear in q^s:
+    /// q = (k1^2 + t)/(k1^2 (1 + t)) goes from 1 to 1/k1^2. dq is proportional to dt / (1 + t)^2 and
+    /// the density of t to q^(-p) / (1 + t)^2, so that u is linear in q^s:
     ///
     /// ```text
     /// q^s = 1 + u (e^(-s L) - 1),   q^s k1^(2s) = 1 + (1 - u)(e^(s L) - 1)
     /// tan^2 alpha = k1^2 (q - 1) / (1 - k1^2 q),   u/(1-u) at k1 = 1
     /// ```
     ///
-    /// and ln q = -u L for p = 1. Each difference is taken from a logarithm of its own: ln q, and
-    /// ln(k1^2 q), which is small where u is next to 1.
+    /// and ln q = -u L for p = 1. Each difference is evaluated from its own logarithm: ln q, and
+    /// ln(k1^2 q), which is small for u next to 1.
     fn sample_tan2_alpha(&self, u: f64) -> f64 {
         let logarithm = self.k1_squared.ln();
         if logarithm == 0.0 {
@@ -124,13 +118,13 @@ impl FacetDistribution for Power {
         self.k1_squared * (fraction.exp_m1() / -rest.exp_m1())
     }
 
-    /// With the exponent p,
+    /// f(alpha)/f(0) divided by its integral N over the hemisphere,
     ///
     /// ```text
     /// p(alpha) = f(alpha)/f(0) / N,   N = pi k1^(2p) (1 - k1^(2(1-p))) / ((1 - k1^2)(1 - p))
     /// ```
     ///
-    /// N goes to pi k1^2 ln(k1^2) / (k1^2 - 1) at p = 1, and to pi at k1 = 1.
+    /// with the limits N = pi k1^2 ln(k1^2) / (k1^2 - 1) at p = 1 and N = pi at k1 = 1.
     fn sampling_density(&self, tan2_alpha: f64, sec_alpha: f64) -> f64 {
         let logarithm = self.k1_squared.ln();
         let total = if logarithm == 0.0 {
@@ -143,12 +137,12 @@ impl FacetDistribution for Power {
     }
 }
 
-/// (e^(s x) - 1)/s, which is x at s = 0: the integral of e^(s y) over y from 0 to x.
+/// (e^(s x) - 1)/s, the integral of e^(s y) over y from 0 to x, which is x at s = 0.
 fn exp_m1_over(s: f64, x: f64) -> f64 {
     if s == 0.0 { x } else { (s * x).exp_m1() / s }
 }
 
-/// ln(1 + s x)/s, which is x at s = 0: the inverse of [`exp_m1_over`].
+/// ln(1 + s x)/s, the inverse of [`exp_m1_over`], which is x at s = 0.
 fn ln_1p_over(s: f64, x: f64) -> f64 {
     if s == 0.0 { x } else { (s * x).ln_1p() / s }
 }

@@ -1,28 +1,28 @@
-//! A polynomial in place of the Fresnel factor.
+//! A polynomial approximation of the Fresnel factor.
 
 use std::f64::consts::PI;
 
-use super::{Dielectric, FresnelFactor};
-use crate::quotient::Quotient;
-use crate::real::{Real, horner};
+use super::dielectric::Dielectric;
+use super::factor::FresnelFactor;
+use crate::numeric::{Ratio, Real, horner};
 
-/// Terms of the Chebyshev series that are worked out, of which a polynomial takes the first.
+/// The number of terms of the Chebyshev series that are computed. A polynomial uses the first of them.
 const TERMS: usize = 64;
 
-/// What the roundings of the series add to the bound.
+/// The contribution of the rounding errors in the series to the bound.
 const ROUNDING: f64 = 1e-10;
 
-/// A polynomial in 1 - cos gamma over a square, in place of R0(gamma): no root, and no division of
-/// its own.
+/// An approximation of R0(gamma) by a polynomial in 1 - cos gamma over a square, which needs no root
+/// and no division of its own.
 ///
 /// ```text
 /// R0(gamma) ~ P(1 - c) / (c + 1/sqrt(n^2 + 1))^2,   c = cos gamma
 /// ```
 ///
-/// The square takes away the pole of R0 at negative c, next to which a polynomial alone would need
-/// twice as many terms. P is the start of the Chebyshev series over c in [least cos gamma, 1]. What
-/// it leaves out is at most the sum of the magnitudes of the other terms, which are worked out too:
-/// the [bound](Self::error_bound) of the relative error is computed, not estimated.
+/// The square removes the pole of R0 at negative c, because of which a polynomial alone would need
+/// twice as many terms. P is the start of the Chebyshev series over c in [least cos gamma, 1]. Its
+/// error is at most the sum of the magnitudes of the other terms, which are computed too, so that the
+/// [bound](Self::error_bound) of the relative error is computed and not estimated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FresnelPolynomial<const N: usize> {
     coefficients: [f64; N],
@@ -31,7 +31,8 @@ pub struct FresnelPolynomial<const N: usize> {
 }
 
 impl<const N: usize> FresnelPolynomial<N> {
-    /// The polynomial for cos gamma in [`least_cos_gamma`, 1], where 0 <= `least_cos_gamma` < 1.
+    /// The polynomial with N coefficients for cos gamma in [`least_cos_gamma`, 1], where
+    /// 0 <= `least_cos_gamma` < 1.
     pub fn new(fresnel: &Dielectric, least_cos_gamma: f64) -> Self {
         let range = 1.0 - least_cos_gamma;
         let from_pole = 1.0 / fresnel.n().hypot(1.0);
@@ -54,10 +55,10 @@ impl<const N: usize> FresnelPolynomial<N> {
         }
     }
 
-    /// What the terms beyond the polynomial may add, over the least value.
+    /// The sum of the magnitudes of the terms beyond the polynomial, relative to the least value.
     fn bound(series: &[f64; TERMS], nodes: &[f64; TERMS]) -> f64 {
         let left_out: f64 = series[N..].iter().map(|term| term.abs()).sum();
-        // Where the series does not end within the terms, there is no bound.
+        // There is no bound if the series does not converge within the terms.
         let last: f64 = series[TERMS - 4..].iter().map(|term| term.abs()).sum();
         if last > 1e-3 * left_out.max(ROUNDING) {
             return f64::INFINITY;
@@ -66,7 +67,7 @@ impl<const N: usize> FresnelPolynomial<N> {
         left_out / (least - left_out).max(0.0) + ROUNDING
     }
 
-    /// The largest relative error over the range of cos gamma; infinite where none is known.
+    /// A bound of the relative error over the range of cos gamma; infinite if none is known.
     pub fn error_bound(&self) -> f64 {
         self.error_bound
     }
@@ -94,9 +95,9 @@ fn powers<const N: usize>(series: &[f64], range: f64) -> [f64; N] {
 
 impl<const N: usize> FresnelFactor for FresnelPolynomial<N> {
     #[inline]
-    fn quotient<R: Real>(&self, cos_gamma: R, _cos2_gamma: R) -> Quotient<R> {
+    fn ratio<R: Real>(&self, cos_gamma: R, _cos2_gamma: R) -> Ratio<R> {
         let from_pole = cos_gamma + R::of(self.from_pole);
-        Quotient {
+        Ratio {
             numerator: horner(R::of(1.0) - cos_gamma, &self.coefficients),
             denominator: from_pole * from_pole,
         }
@@ -117,14 +118,14 @@ mod tests {
             let c = least + (1.0 - least) * f64::from(i) / 1000.0;
             let c = c.max(1e-9);
             let exact = fresnel.relative(c);
-            let error = (polynomial.quotient(c, c * c).value() / exact - 1.0).abs();
+            let error = (polynomial.ratio(c, c * c).value() / exact - 1.0).abs();
             assert!(error <= bound, "{n} {c}: {error} > {bound}");
         }
         bound
     }
 
     #[test]
-    fn more_coefficients_err_less() {
+    fn more_coefficients_have_a_smaller_error() {
         for n in [1.3, 1.5, 1.7, 4.0] {
             let bounds = [check::<5>(n, 0.0), check::<7>(n, 0.0), check::<11>(n, 0.0)];
             assert!(bounds.is_sorted_by(|a, b| a > b), "{n}: {bounds:?}");

@@ -1,29 +1,32 @@
-//! What an evaluation costs on the machine at hand.
+//! The time of an evaluation on the present machine.
 
 use std::time::{Duration, Instant};
 
-use super::Probe;
-use super::probe::single_value;
-use crate::AnyBrdf;
+use super::probe::{Probe, single_value};
 use crate::evaluator::{Evaluator, Precision};
-use crate::real::Primitive;
+use crate::family::AnyBrdf;
+use crate::numeric::Primitive;
 
-/// For how long an evaluator is timed, if one pass is not longer.
-const WATCHED: Duration = Duration::from_millis(3);
+/// The least time for which an evaluator is measured.
+const LEAST_TIME: Duration = Duration::from_millis(3);
 
-/// Points by which the cost is measured: by one thread, in the caches. No power of two: arrays that lie
-/// a multiple of 4 KiB apart get in each other's way, which doubled the time of `f32`.
+/// The number of points at which the cost on one thread is measured, with arrays in the caches. It is
+/// not a power of two, because arrays at a distance of a multiple of 4 KiB share cache sets, which
+/// doubled the time in `f32`.
 pub const TIMED: usize = 3000;
 
-/// Passes of the shortest of which the time is taken: whatever else the machine does only adds.
+/// The least number of passes. The time of the shortest pass counts, because other work of the machine
+/// only adds to it.
 const LEAST_PASSES: u32 = 5;
 
-/// What an evaluation at the points of a probe costs in nanoseconds, with arrays of the evaluator's
-/// own precision: the shortest of several passes. Probes of fewer than
-/// [`PARALLEL_FROM`](crate::evaluator::PARALLEL_FROM) points are evaluated by one thread, larger ones
-/// by all of the current rayon pool.
+/// The time of one evaluation at the points of a probe, in nanoseconds, with arrays of the evaluator's
+/// own precision.
+///
+/// It is taken from the shortest of several passes. Probes of fewer than
+/// [`PARALLEL_FROM`](crate::evaluator::PARALLEL_FROM) points are evaluated on one thread, larger ones
+/// on all threads of the current rayon pool.
 pub fn cost(evaluator: &dyn Evaluator, probe: &Probe) -> f64 {
-    // The arrays have one length.
+    // All arrays have the same length, so that there is no error.
     match evaluator.precision() {
         Precision::Double => shortest(probe.count(), |out: &mut [f64]| {
             let _ = evaluator.values(&probe.points(), out);
@@ -34,8 +37,8 @@ pub fn cost(evaluator: &dyn Evaluator, probe: &Probe) -> f64 {
     }
 }
 
-/// What [`AnyBrdf::value`] costs in nanoseconds, called for one point after the other, the geometry
-/// included: what a user would write first.
+/// The time of one call of [`AnyBrdf::value`], in nanoseconds, including that of the geometry, in a
+/// loop over the points.
 pub fn cost_of_single_values(brdf: &AnyBrdf, probe: &Probe) -> f64 {
     let points = probe.points();
     shortest(probe.count(), |out: &mut [f64]| {
@@ -51,7 +54,7 @@ fn shortest<T: Primitive>(count: usize, mut pass: impl FnMut(&mut [T])) -> f64 {
     let begin = Instant::now();
     let mut least = Duration::MAX;
     let mut passes = 0;
-    while passes < LEAST_PASSES || begin.elapsed() < WATCHED {
+    while passes < LEAST_PASSES || begin.elapsed() < LEAST_TIME {
         let start = Instant::now();
         pass(&mut out);
         least = least.min(start.elapsed());

@@ -2,28 +2,29 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use serde::{Deserialize, Serialize};
-
 /// Whether directions leave the plane of incidence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Azimuth {
-    /// phi is 0 or pi.
+    /// All views are in the plane of incidence: phi is 0 or pi.
     InPlane,
-    /// Any phi.
+    /// phi is arbitrary.
     Full,
 }
 
-/// Ranges of the incidence angle and of the view angle's magnitude, in radians, and the azimuths.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "RawDomain")]
+/// The ranges of the incidence angle and of the magnitude of the view angle, in radians, and of the
+/// azimuth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "RawDomain"))]
 pub struct Domain {
     pub(crate) incidence: (f64, f64),
     pub(crate) view: (f64, f64),
     pub(crate) azimuth: Azimuth,
 }
 
-/// Why there is no such domain.
+/// A range of angles that is not a range within [0, pi/2).
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{angle} from {from} to {to} rad: expected a range within [0, pi/2)")]
 pub struct DomainError {
@@ -32,14 +33,16 @@ pub struct DomainError {
     to: f64,
 }
 
-/// A domain as it stands in a file.
-#[derive(Deserialize)]
+/// A domain as a file contains it, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
 struct RawDomain {
     incidence: (f64, f64),
     view: (f64, f64),
     azimuth: Azimuth,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<RawDomain> for Domain {
     type Error = DomainError;
 
@@ -61,7 +64,12 @@ impl Default for Domain {
 }
 
 impl Domain {
-    /// The domain of ranges, each from its smaller to its larger end, within [0, pi/2).
+    /// The domain of two ranges in radians, each from its smaller to its larger end and within
+    /// [0, pi/2), with the given azimuths.
+    ///
+    /// # Errors
+    ///
+    /// [`DomainError`] for a range that is not within [0, pi/2) or whose ends are not ascending.
     pub fn new(
         incidence: (f64, f64),
         view: (f64, f64),
@@ -79,18 +87,13 @@ impl Domain {
         })
     }
 
-    /// The domain with all azimuths.
+    /// The domain of two ranges in radians with all azimuths.
+    ///
+    /// # Errors
+    ///
+    /// [`DomainError`] as for [`new`](Self::new).
     pub fn all(incidence: (f64, f64), view: (f64, f64)) -> Result<Self, DomainError> {
         Self::new(incidence, view, Azimuth::Full)
-    }
-
-    /// The domain in plane, of ranges that are known to be right.
-    pub(crate) fn in_plane(incidence: (f64, f64), view: (f64, f64)) -> Self {
-        Self {
-            incidence,
-            view,
-            azimuth: Azimuth::InPlane,
-        }
     }
 
     /// The range of the incidence angle psi, in radians.
@@ -98,7 +101,7 @@ impl Domain {
         self.incidence
     }
 
-    /// The range of the view angle's magnitude, in radians.
+    /// The range of the magnitude of the view angle theta, in radians.
     pub fn view(&self) -> (f64, f64) {
         self.view
     }
@@ -108,8 +111,8 @@ impl Domain {
         self.azimuth
     }
 
-    /// A bound of the facet's tilt alpha, and of the incidence gamma on it: half of the largest
-    /// angle between the source and the view, or its mirror image.
+    /// A bound of the facet's tilt alpha and of the incidence gamma on it, in radians: half of the
+    /// largest angle between the source and the view or its mirror image.
     pub(crate) fn largest_facet_angle(&self) -> f64 {
         0.5 * (self.incidence.1 + self.view.1)
     }

@@ -1,152 +1,132 @@
-//! The cheapest evaluator that a scene can do with.
+//! The fastest evaluator that meets the requirements of a scene.
 
 use std::time::Instant;
 
-use serde::Serialize;
+use super::cost::{TIMED, cost};
+use super::probe::{Errors, Probe};
+use super::requirements::Scene;
+use crate::evaluator::{Double, Evaluator, FittedFresnel, Lambertian, Single, SpecularOnly};
+use crate::family::AnyBrdf;
 
-use super::{Azimuth, Errors, Probe, Scene, TIMED, cost};
-use crate::AnyBrdf;
-use crate::evaluator::{
-    Evaluator, Exact, FittedFresnel, InPlaneTable, IncidenceTable, IsotropicTable, Lambertian,
-    Single, SpecularOnly, TableError,
-};
-
-/// Points at which the errors are looked for.
+/// The number of points at which the errors are measured.
 const PROBED: usize = 1 << 17;
 
-/// An evaluator is taken if the largest error seen is within this part of the tolerance: among more
-/// points, a larger one will be found.
+/// The part of the tolerance that the largest measured error may reach. Among more points there are
+/// larger errors.
 const PART_OF_TOLERANCE: f64 = 0.7;
 
-/// What a table is built to.
-const TABLE_PART: f64 = 0.5;
-
-/// Points by which the cost on all cores is measured: too many for the caches.
+/// The number of points at which the cost on all threads is measured, too many for the caches.
 const TIMED_ON_ALL: usize = 1_000_000;
 
-/// What the polynomial of the Fresnel factor may take of the tolerance.
+/// The part of the tolerance that the polynomial of the Fresnel factor may use.
 const FRESNEL_PART: f64 = 0.4;
 
-/// Tables are not tried where all evaluations together take less than this, in nanoseconds: it is
-/// what the smallest of them costs to be made.
-const WORTH_A_TABLE: f64 = 1e6;
-
-/// What was measured of an evaluator, or why it was not.
-#[derive(Debug, Clone, Serialize)]
+/// The measurements of an evaluator and the reason why it was not chosen.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Candidate {
-    /// What it is called.
+    /// The name of the evaluator.
     pub name: &'static str,
-    /// What it errs by over the domain, where it could be made.
+    /// The errors over the domain, or `None` if there is no such evaluator for the BRDF.
     pub errors: Option<Errors>,
-    /// What an evaluation costs by one thread, in nanoseconds, with arrays in the caches.
+    /// The time of one evaluation on one thread, in nanoseconds, with arrays in the caches.
     pub nanoseconds: Option<f64>,
-    /// What it costs by all threads, with arrays in memory; measured in a [`Survey`] only.
+    /// The time of one evaluation on all threads, in nanoseconds, with arrays in memory; measured in a
+    /// [`Survey`] only.
     pub nanoseconds_all_threads: Option<f64>,
-    /// What it cost to be made, in seconds.
+    /// The time that making the evaluator took, in seconds.
     pub build_seconds: f64,
-    /// Its memory, in bytes.
-    pub bytes: usize,
-    /// Why it was not taken; `None` of the one that was.
+    /// The reason why it was not chosen; `None` for the chosen evaluator.
     pub refusal: Option<Refusal>,
 }
 
-/// Why an evaluator was not taken.
-#[derive(Debug, Clone, PartialEq, thiserror::Error, Serialize)]
-#[serde(rename_all = "kebab-case")]
+/// The reason why an evaluator was not chosen.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Refusal {
-    /// Its error is too large.
-    #[error("errs by up to {error:.1e}: allowed are {allowed:.1e}")]
+    /// The error is too large.
+    #[error("maximum error {error:.1e} exceeds {allowed:.1e}")]
     Error {
-        /// The largest relative error that was seen.
+        /// The largest relative error that was measured.
         error: f64,
-        /// What was allowed, somewhat less than the tolerance.
+        /// The largest relative error that is accepted, somewhat less than the tolerance.
         allowed: f64,
     },
-    /// It cannot be made within the memory.
-    #[error("{0}")]
-    Table(String),
-    /// It is not for this BRDF or domain.
+    /// There is no such evaluator for this BRDF.
     #[error("{0}")]
     Unfit(&'static str),
-    /// Another one costs less.
-    #[error("costs {times:.2} times as much, the making included")]
+    /// Another evaluator is faster.
+    #[error("takes {times:.2} times as long, including the time of making it")]
     Cost {
-        /// Its cost over that of the one that was taken.
+        /// The cost relative to that of the chosen evaluator.
         times: f64,
     },
-    /// There are too few evaluations for it to be made.
-    #[error("takes longer to be made than all evaluations by another")]
-    Making,
-}
-
-impl From<TableError> for Refusal {
-    fn from(error: TableError) -> Self {
-        Self::Table(error.to_string())
-    }
 }
 
 /// No evaluator is within the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
-    "no evaluator is within the relative tolerance {tolerance:e}: the best, {best}, errs by {reached:.1e}"
+    "no evaluator is within the relative tolerance {tolerance:e}: the most accurate, {best}, has a maximum error of {reached:.1e}"
 )]
 pub struct PlanError {
-    /// What was asked for.
+    /// The relative tolerance of the scene.
     pub tolerance: f64,
-    /// The most accurate evaluator.
+    /// The name of the most accurate evaluator.
     pub best: &'static str,
-    /// Its largest relative error.
+    /// The largest relative error of that evaluator.
     pub reached: f64,
 }
 
-/// The choice for a scene, on the machine at hand.
+/// The evaluator of a BRDF that is chosen for a scene on the present machine.
 #[derive(Debug)]
 pub struct Plan {
-    /// The evaluator.
+    /// The chosen evaluator.
     pub evaluator: Box<dyn Evaluator>,
-    /// All that were looked at, with what was measured of them.
+    /// All evaluators that were considered, with their measurements.
     pub candidates: Vec<Candidate>,
 }
 
 impl Plan {
-    /// Makes and measures the evaluators of a BRDF for a scene, and takes the cheapest one within its
-    /// tolerance and memory: cost is the time of one evaluation by one core, plus the share in the
-    /// time of making.
+    /// Makes and measures the evaluators of a BRDF for a scene and chooses the one of the least cost
+    /// within its tolerance. The cost is the time of one evaluation on one thread plus the time of
+    /// making the evaluator divided by the number of evaluations.
     ///
-    /// Takes some tens of milliseconds, more where large tables are tried.
+    /// This takes some tens of milliseconds.
     ///
-    /// Errors: none is within the tolerance.
+    /// # Errors
+    ///
+    /// [`PlanError`] if no evaluator is within the tolerance.
     pub fn new(brdf: &AnyBrdf, scene: &Scene) -> Result<Self, PlanError> {
         let mut trial = Trial::new(brdf, scene, None);
-        trial.formulas();
-        trial.tables();
-        trial.decide().1
+        trial.measure_all();
+        trial.choose().1
     }
 
-    /// What was measured of the evaluator that was taken.
+    /// The measurements of the chosen evaluator.
     pub fn chosen(&self) -> Option<&Candidate> {
         self.candidates.iter().find(|c| c.refusal.is_none())
     }
 }
 
-/// All that can be measured of the evaluators for a scene: of those too that a [`Plan`] does not try.
+/// The measurements of all evaluators for a scene, including those on all threads.
 #[derive(Debug)]
 pub struct Survey {
-    /// All evaluators.
+    /// The measurements of all evaluators.
     pub candidates: Vec<Candidate>,
-    /// What would be chosen.
+    /// The name of the evaluator that a [`Plan`] chooses.
     pub chosen: Result<&'static str, PlanError>,
 }
 
 impl Survey {
-    /// Makes and measures all evaluators of a BRDF for a scene, by one thread and by all of the
-    /// current rayon pool. Takes a second or so.
+    /// Makes and measures all evaluators of a BRDF for a scene, on one thread and on all threads of
+    /// the current rayon pool. This takes about a second.
     pub fn new(brdf: &AnyBrdf, scene: &Scene) -> Self {
         let many = Probe::new(brdf, &scene.domain, scene.coordinates, TIMED_ON_ALL, 2);
         let mut trial = Trial::new(brdf, scene, Some(many));
-        trial.formulas();
-        trial.tables();
-        let (candidates, plan) = trial.decide();
+        trial.measure_all();
+        let (candidates, plan) = trial.choose();
         Self {
             candidates,
             chosen: plan.map(|plan| plan.evaluator.name()),
@@ -154,7 +134,7 @@ impl Survey {
     }
 }
 
-/// An evaluator, if it could be made, with what was measured of it.
+/// An evaluator, if there is one for the BRDF, with its measurements.
 type Tried = (Option<Box<dyn Evaluator>>, Candidate);
 
 struct Trial<'a> {
@@ -162,7 +142,7 @@ struct Trial<'a> {
     scene: &'a Scene,
     probe: Probe,
     timed: Probe,
-    /// For the cost on all cores, where that is asked for: then every evaluator is tried.
+    /// The points for the cost on all threads, if that is measured.
     many: Option<Probe>,
     tried: Vec<Tried>,
 }
@@ -180,70 +160,22 @@ impl<'a> Trial<'a> {
         }
     }
 
-    fn formulas(&mut self) {
+    fn measure_all(&mut self) {
         let brdf = *self.brdf;
         let least_cos_gamma = self.scene.domain.largest_facet_angle().cos();
         let tolerance = FRESNEL_PART * self.scene.tolerance;
-        self.offer("lambertian", || Ok(Lambertian::new(brdf.parameters().kd)));
-        self.offer("specular-only", || Ok(SpecularOnly::new(&brdf)));
-        self.offer("f32-fitted-fresnel", || {
+        self.try_candidate("lambertian", || Ok(Lambertian::new(brdf.parameters().kd)));
+        self.try_candidate("specular-only", || Ok(SpecularOnly::new(&brdf)));
+        self.try_candidate("f32-fitted-fresnel", || {
             FittedFresnel::new(brdf, least_cos_gamma, tolerance)
                 .ok_or(Refusal::Unfit("no polynomial is within the tolerance"))
         });
-        self.offer("f32", || Ok(Single::new(brdf)));
-        self.offer("exact", || Ok(Exact::new(brdf)));
-    }
-
-    fn tables(&mut self) {
-        let (brdf, Scene { domain, .. }) = (*self.brdf, *self.scene);
-        let (incidence, largest_view) = (domain.incidence(), domain.view().1);
-        let tolerance = TABLE_PART * self.scene.tolerance;
-        let limit = self.scene.memory_limit;
-        let in_plane = domain.azimuth() == Azimuth::InPlane;
-        let all_evaluations = self.least_cost() * self.scene.evaluations;
-        let worth = self.many.is_some() || all_evaluations > WORTH_A_TABLE;
-        let fit = move |fits: bool, words| match (worth, fits) {
-            (_, false) => Err(Refusal::Unfit(words)),
-            (false, _) => Err(Refusal::Making),
-            _ => Ok(()),
-        };
-        self.offer("table-incidence", || {
-            fit(
-                in_plane && incidence.0 == incidence.1,
-                "is for one incidence in plane",
-            )?;
-            Ok(IncidenceTable::new(
-                &brdf,
-                incidence.0,
-                largest_view,
-                tolerance,
-                limit,
-            )?)
-        });
-        self.offer("table-in-plane", || {
-            fit(
-                in_plane && incidence.0 < incidence.1,
-                "is for several incidences in plane",
-            )?;
-            Ok(InPlaneTable::new(
-                &brdf,
-                incidence,
-                largest_view,
-                tolerance,
-                limit,
-            )?)
-        });
-        self.offer("table-isotropic", || {
-            fit(
-                largest_view + incidence.1 > 0.0,
-                "is for more than one direction",
-            )?;
-            Ok(IsotropicTable::new(brdf, &domain, tolerance, limit)?)
-        });
+        self.try_candidate("f32", || Ok(Single::new(brdf)));
+        self.try_candidate("f64", || Ok(Double::new(brdf)));
     }
 
     /// Makes and measures an evaluator.
-    fn offer<E: Evaluator + 'static>(
+    fn try_candidate<E: Evaluator + 'static>(
         &mut self,
         name: &'static str,
         make: impl FnOnce() -> Result<E, Refusal>,
@@ -256,7 +188,6 @@ impl<'a> Trial<'a> {
             nanoseconds: None,
             nanoseconds_all_threads: None,
             build_seconds: start.elapsed().as_secs_f64(),
-            bytes: 0,
             refusal: None,
         };
         let evaluator = match made {
@@ -265,7 +196,6 @@ impl<'a> Trial<'a> {
                 candidate.nanoseconds = Some(cost(&evaluator, &self.timed));
                 candidate.nanoseconds_all_threads =
                     self.many.as_ref().map(|many| cost(&evaluator, many));
-                candidate.bytes = evaluator.bytes();
                 Some(Box::new(evaluator) as Box<dyn Evaluator>)
             }
             Err(refusal) => {
@@ -276,12 +206,12 @@ impl<'a> Trial<'a> {
         self.tried.push((evaluator, candidate));
     }
 
-    /// The largest error that is allowed.
+    /// The largest error that is accepted.
     fn allowed(&self) -> f64 {
         PART_OF_TOLERANCE * self.scene.tolerance
     }
 
-    /// What an evaluation costs, in nanoseconds, if the evaluator is within the tolerance.
+    /// The cost of an evaluation in nanoseconds, if the evaluator is within the tolerance.
     fn cost_of(&self, candidate: &Candidate) -> Option<f64> {
         let (errors, nanoseconds) = (candidate.errors?, candidate.nanoseconds?);
         let making = 1e9 * candidate.build_seconds / self.scene.evaluations.max(1.0);
@@ -293,8 +223,8 @@ impl<'a> Trial<'a> {
         costs.fold(f64::INFINITY, f64::min)
     }
 
-    /// What was measured, with the reasons, and the choice.
-    fn decide(mut self) -> (Vec<Candidate>, Result<Plan, PlanError>) {
+    /// The measurements of all evaluators, with the reasons, and the choice.
+    fn choose(mut self) -> (Vec<Candidate>, Result<Plan, PlanError>) {
         let least = self.least_cost();
         let allowed = self.allowed();
         let costs: Vec<Option<f64>> = self.tried.iter().map(|(_, c)| self.cost_of(c)).collect();

@@ -1,23 +1,21 @@
-//! How an evaluator errs at fresh points of a domain.
+//! The errors of an evaluator at points of a domain.
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::Vector3;
-use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
-use super::{Azimuth, Coordinates, Domain};
+use super::domain::{Azimuth, Domain};
+use super::requirements::Coordinates;
 use crate::evaluator::{Evaluator, Points, Precision};
-use crate::real::Primitive;
-use crate::{AnyBrdf, Geometry};
+use crate::family::AnyBrdf;
+use crate::geometry::Geometry;
+use crate::numeric::Primitive;
+use crate::parallel;
 
-/// Points of a probe that decides on a table.
-const TABLE_PROBE: usize = 1 << 15;
-
-/// Points of a domain with the exact f_r, in both precisions, each exact at its own points.
+/// Points of a domain in `f64` and in `f32`, with f_r at each of them as the reference.
 ///
-/// Half of the points lie evenly over the domain; the others where evaluators err most: next to the
-/// mirror direction, at a distance of the lobe's width and far less, and at the ends of the ranges.
+/// The reference is [`AnyBrdf::value`], evaluated at the points of each precision separately. Half of
+/// the points are spread evenly over the domain. The others are where evaluators have the largest
+/// errors: a quarter next to the mirror direction, at distances from 1e-4 to 10 widths of the lobe,
+/// and a quarter at the ends of the ranges.
 #[derive(Debug, Clone)]
 pub struct Probe {
     coordinates: Coordinates,
@@ -27,19 +25,20 @@ pub struct Probe {
     exact_single: Vec<f64>,
 }
 
-/// Relative errors of f_r.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// Relative errors of f_r over a set of points, dimensionless.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Errors {
-    /// The largest.
+    /// The largest error.
     pub max: f64,
-    /// 99 of 100 are not larger.
+    /// The 99th percentile.
     pub p99: f64,
-    /// Root mean square.
+    /// The root mean square.
     pub rms: f64,
 }
 
 impl Probe {
-    /// `count` points of the domain; another `seed` gives others.
+    /// `count` points of the domain, which are determined by `seed`.
     pub fn new(
         brdf: &AnyBrdf,
         domain: &Domain,
@@ -63,24 +62,24 @@ impl Probe {
         }
     }
 
-    /// The points in `f64`.
+    /// The points as arrays of `f64`.
     pub fn points(&self) -> Points<'_, f64> {
         points(&self.double, self.coordinates)
     }
 
-    /// The points in `f32`.
+    /// The points as arrays of `f32`.
     pub fn points_f32(&self) -> Points<'_, f32> {
         points(&self.single, self.coordinates)
     }
 
-    /// How many points there are.
+    /// The number of points.
     pub fn count(&self) -> usize {
         self.exact_double.len()
     }
 
-    /// The errors of an evaluator, at the points in the precision that it works in.
+    /// The errors of an evaluator at the points in its own precision.
     pub fn errors(&self, evaluator: &dyn Evaluator) -> Errors {
-        // The arrays have one length.
+        // All arrays have the same length, so that there is no error.
         let relative = match evaluator.precision() {
             Precision::Double => {
                 let mut out = vec![0.0; self.count()];
@@ -97,13 +96,12 @@ impl Probe {
     }
 }
 
-/// f_r of each point by itself: the measure of all evaluators.
+/// f_r at each point by itself, the reference for all evaluators.
 fn exact<T: Primitive>(brdf: &AnyBrdf, points: &Points<T>, count: usize) -> Vec<f64> {
-    let value = |i: usize| single_value(brdf, points, i);
-    (0..count).into_par_iter().map(value).collect()
+    parallel::map(count, |i| single_value(brdf, points, i))
 }
 
-/// f_r of one of the points; NaN outside the domain.
+/// f_r at one of the points; NaN outside the domain.
 #[inline]
 pub(super) fn single_value<T: Primitive>(brdf: &AnyBrdf, points: &Points<T>, i: usize) -> f64 {
     let at = |array: &[T]| array[i].widen();
@@ -111,8 +109,8 @@ pub(super) fn single_value<T: Primitive>(brdf: &AnyBrdf, points: &Points<T>, i: 
         Points::Cosines { psi, theta, phi } => Geometry::from_cosines(at(psi), at(theta), at(phi)),
         Points::Angles { psi, theta, phi } => Geometry::new(at(psi), at(theta), at(phi)),
         Points::Directions { source, view } => {
-            let vector = |[x, y, z]: [&[T]; 3]| Vector3::new(at(x), at(y), at(z));
-            Geometry::from_directions(&vector(source), &vector(view))
+            let [source, view] = [source, view].map(|components| components.map(at));
+            Geometry::from_directions(source, view)
         }
     };
     geometry.map_or(f64::NAN, |geometry| brdf.value(&geometry))
@@ -146,19 +144,13 @@ impl Errors {
     }
 }
 
-/// The largest relative error of an evaluator over a domain, at points of its own.
-pub(crate) fn worst_error(brdf: &AnyBrdf, evaluator: &dyn Evaluator, domain: &Domain) -> f64 {
-    let probe = Probe::new(brdf, domain, Coordinates::Cosines, TABLE_PROBE, 7);
-    probe.errors(evaluator).max
-}
-
-/// psi, theta >= 0 and phi of a point of a domain.
+/// psi, theta >= 0 and phi of a point, in radians.
 type Angles = [f64; 3];
 
-/// Points of the domain: an additive sequence in four dimensions (Roberts 2018), which fills it
-/// evenly for any number of points.
+/// Points of the domain from an additive sequence in four dimensions (Roberts 2018), which is even
+/// for any number of points.
 fn angles(domain: &Domain, width: f64, count: usize, seed: u32) -> Vec<Angles> {
-    // Powers of the inverse of the root of x^5 = x + 1.
+    // Powers of 1/x, where x is the positive root of x^5 = x + 1.
     const STEPS: [f64; 4] = [
         0.856_674_883_854_502_9,
         0.733_891_856_627_125_6,
@@ -190,12 +182,12 @@ fn evenly(domain: &Domain, [u, v, w, _]: [f64; 4]) -> Angles {
     [within(domain.incidence, u), within(domain.view, v), phi]
 }
 
-/// Forward more often than back: that is where the peak is.
+/// The azimuth in plane, which is forward more often than backward because the peak is there.
 fn in_plane(w: f64) -> f64 {
     if w < 0.7 { PI } else { 0.0 }
 }
 
-/// Beside the mirror direction by 1e-4 to 10 widths of the lobe.
+/// A point at 1e-4 to 10 widths of the lobe from the mirror direction.
 fn near_mirror(domain: &Domain, width: f64, [u, v, w, x]: [f64; 4]) -> Angles {
     let psi = within(domain.incidence, u);
     let offset = width * 10_f64.powf(5.0 * v - 4.0);
@@ -208,7 +200,7 @@ fn near_mirror(domain: &Domain, width: f64, [u, v, w, x]: [f64; 4]) -> Angles {
     [psi, theta, phi]
 }
 
-/// At the ends of some of the ranges, or back into the source.
+/// A point at the ends of some of the ranges, or in the direction back into the source.
 fn at_ends(domain: &Domain, [u, v, w, x]: [f64; 4]) -> Angles {
     let end = |range: (f64, f64), u: f64| match u {
         u if u < 0.25 => range.0,
@@ -227,7 +219,7 @@ fn at_ends(domain: &Domain, [u, v, w, x]: [f64; 4]) -> Angles {
     [psi, end(domain.view, v), phi]
 }
 
-/// The arrays of the coordinates; those that are not used are empty.
+/// The arrays of the coordinates. Unused arrays are empty.
 fn in_coordinates(angles: &[Angles], coordinates: Coordinates) -> [Vec<f64>; 6] {
     let array = |f: fn(&Angles) -> f64| angles.iter().map(f).collect::<Vec<f64>>();
     let none = Vec::new;

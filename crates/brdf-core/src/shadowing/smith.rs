@@ -1,20 +1,19 @@
-//! Smith's shadowing for the GGX distribution, source and view independent of each other.
+//! The separable Smith shadowing for the GGX distribution.
 
-use super::Shadowing;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::factor::Shadowing;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
-/// The separable Smith factor with the GGX form of each side (Walter et al., EGSR 2007, eq. 34),
-/// its roughness being the width k1 of the facet distribution:
+/// The separable Smith factor, in which source and view are independent, with the form for GGX (Walter
+/// et al., EGSR 2007, eq. 34). Its roughness is the width k1 of the facet distribution:
 ///
 /// ```text
 /// G = G1(psi) G1(theta),   G1(x) = 2 / (1 + sqrt(1 + k1^2 tan^2 x))
 /// G1(x) / cos x = 2 / (cos x + sqrt(cos^2 x + k1^2 sin^2 x))
 /// ```
 ///
-/// sin^2 x is taken from cos x: where that loses digits, it stands beside cos^2 x, and an error of
-/// k1^2 2^-53 is left.
+/// sin^2 x is computed from cos x. Where that loses digits, cos^2 x dominates the sum, and the
+/// relative error is k1^2 2^-53.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Smith {
     k1: f64,
@@ -22,7 +21,7 @@ pub struct Smith {
 }
 
 impl Smith {
-    /// The factor for a width k1 > 0, which is not checked here.
+    /// The factor for a width k1 > 0, which is not checked.
     pub fn new(k1: f64) -> Self {
         Self {
             k1,
@@ -43,10 +42,10 @@ impl Shadowing for Smith {
     const DEPENDS_ON_WIDTH: bool = true;
 
     #[inline]
-    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, _: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, _: &HalfVector<R>) -> Ratio<R> {
         let (_, source) = self.rough_and_root(cos_psi);
         let (_, view) = self.rough_and_root(cos_theta);
-        Quotient {
+        Ratio {
             numerator: R::of(4.0),
             denominator: (cos_psi + source) * (cos_theta + view),
         }
@@ -72,7 +71,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn equals_the_textbook(psi in 0.0..1.5_f64, theta in 0.0..1.5_f64, k1 in 0.01..10.0_f64) {
+        fn equals_the_textbook_formula(psi in 0.0..1.5_f64, theta in 0.0..1.5_f64, k1 in 0.01..10.0_f64) {
             let g1 = |x: f64| 2.0 / (1.0 + (1.0 + (k1 * x.tan()).powi(2)).sqrt());
             let expected = g1(psi) * g1(theta) / (psi.cos() * theta.cos());
             let value = Smith::new(k1).over_cosines(psi.cos(), theta.cos(), 0.0);

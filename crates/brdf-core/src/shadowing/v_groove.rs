@@ -1,17 +1,16 @@
 //! The V-groove factor of Torrance and Sparrow.
 
-use super::Shadowing;
-use crate::pair::HalfVector;
-use crate::quotient::Quotient;
-use crate::real::Real;
+use super::factor::Shadowing;
+use crate::direction_pair::HalfVector;
+use crate::numeric::{Ratio, Real};
 
-/// The V-groove factor of Torrance and Sparrow (JOSA 57, 1105, 1967), which the paper takes:
+/// The V-groove factor of Torrance and Sparrow (JOSA 57, 1105, 1967), which the paper uses:
 ///
 /// ```text
 /// G = min(1, 2 cos alpha cos theta / cos gamma, 2 cos alpha cos psi / cos gamma)
 /// ```
 ///
-/// With h the sum of the two unit vectors, 2 cos alpha / cos gamma = `h_z` / cos^2 gamma, and
+/// With the sum h of the two unit vectors, 2 cos alpha / cos gamma = `h_z` / cos^2 gamma and
 /// cos^2 gamma = (`h_z` / (2 cos alpha))^2, so that
 ///
 /// ```text
@@ -25,12 +24,12 @@ impl Shadowing for VGroove {
     const DEPENDS_ON_WIDTH: bool = false;
 
     #[inline]
-    fn quotient<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Quotient<R> {
+    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Ratio<R> {
         let h_z = cos_psi + cos_theta;
         let along2 = half.along * half.along;
         let open = along2 * (cos_psi * cos_theta);
         let blocked = R::of(0.25) * h_z * half.length2 * cos_psi.max(cos_theta);
-        Quotient {
+        Ratio {
             numerator: along2,
             denominator: open.max(blocked),
         }
@@ -45,7 +44,7 @@ mod tests {
     use crate::Geometry;
 
     #[test]
-    fn nothing_is_hidden_in_the_mirror_direction() {
+    fn facets_are_unshadowed_in_the_mirror_direction() {
         for psi in [0.0, 0.6, 1.5] {
             let geometry = Geometry::in_plane(psi, -psi).unwrap();
             assert!((VGroove.factor(&geometry) - 1.0).abs() < 1e-15);

@@ -22,7 +22,7 @@ use serde::Serialize;
 /// Measures, on this machine, what speed costs in accuracy.
 ///
 /// Without a subcommand: every way to evaluate a BRDF, over the directions of a scene: time for each
-/// evaluation, errors against the exact value, memory; and which of them the scene needs. With `fit`:
+/// evaluation, errors against single values, and which of them the scene needs. With `fit`:
 /// the ways to fit a scan, time against E and the shift of the parameters.
 ///
 /// Exit status: 0 when everything was measured, 1 when no evaluator is within the tolerance or a
@@ -87,10 +87,6 @@ struct Evaluation {
     /// The largest relative error of f_r
     #[arg(long, value_name = "ERROR", default_value = "1e-3", value_parser = positive)]
     tolerance: f64,
-
-    /// The largest memory of a table, in MiB
-    #[arg(long, value_name = "MIB", default_value = "64", value_parser = positive)]
-    memory: f64,
 
     /// How many evaluations there will be
     #[arg(long, value_name = "COUNT", default_value = "1e8", value_parser = positive)]
@@ -251,11 +247,6 @@ impl Evaluation {
         Ok((format!("{}{wavelength}", report.file), brdf))
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a positive number of bytes; more than there can be is no limit"
-    )]
     fn scene(&self) -> Result<Scene, String> {
         let azimuth = if self.in_plane {
             Azimuth::InPlane
@@ -272,7 +263,6 @@ impl Evaluation {
                 CoordinatesArgument::Directions => Coordinates::Directions,
             },
             tolerance: self.tolerance,
-            memory_limit: (self.memory * 1024.0 * 1024.0) as usize,
             evaluations: self.evaluations,
         })
     }

@@ -4,7 +4,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 
-use brdf_core::brdf::check_refractive_index;
+use brdf_core::check_refractive_index;
 use brdf_core::{ModelParameters, Parameters};
 
 use super::energy::{EnergyConstraint, constrain_energy};

@@ -3,9 +3,8 @@
 
 use std::fmt;
 
-use brdf_core::brdf::mirror_factor;
 use brdf_core::fresnel::Dielectric;
-use brdf_core::{Geometry, Parameters};
+use brdf_core::{Geometry, Parameters, mirror_factor};
 use serde::{Deserialize, Serialize};
 
 use super::grid_search::{GridSearch, solve};

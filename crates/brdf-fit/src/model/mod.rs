@@ -6,9 +6,7 @@ mod fixed;
 use std::fmt;
 use std::str::FromStr;
 
-use brdf_core::brdf::N_DOMAIN;
-use brdf_core::facet::P_DOMAIN;
-use brdf_core::{Family, ModelParameters};
+use brdf_core::{Family, ModelParameters, N_DOMAIN, P_DOMAIN};
 use serde::{Deserialize, Serialize};
 
 use crate::format::ParseError;

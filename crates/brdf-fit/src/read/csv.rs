@@ -23,7 +23,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use brdf_core::brdf::check_refractive_index;
+use brdf_core::check_refractive_index;
 
 use super::text::{
     Field, Quantity, Said, Text, comment_of, is_deviation, is_reading, read_bytes, shown,

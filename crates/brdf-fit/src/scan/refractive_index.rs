@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use brdf_core::brdf::check_refractive_index;
+use brdf_core::check_refractive_index;
 use serde::{Deserialize, Serialize};
 
 use crate::format::ParseError;

@@ -1,5 +1,5 @@
-//! The trade of evaluation: what each way to evaluate a BRDF takes, how far it errs, what memory it
-//! needs, over the directions of a scene and on the machine at hand.
+//! The trade-off of evaluation: the time and the errors of each way to evaluate a BRDF, over the
+//! directions of a scene and on the present machine.
 
 use std::fmt::Write as _;
 use std::io;
@@ -16,70 +16,68 @@ use super::picture::{TradePoint, picture};
 use crate::format::{counted, in_degrees};
 use crate::plot::{Figure, PlotError};
 
-/// What [`AnyBrdf::value`] is called, point after point.
+/// The name of [`AnyBrdf::value`] called point after point.
 pub const SINGLE_VALUES: &str = "value";
 
-/// Ways to evaluate a BRDF, compared for a scene.
+/// A comparison of the ways to evaluate a BRDF for a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EvaluatorTrade {
-    /// What the BRDF is of.
+    /// The name of the surface.
     pub of: String,
     /// The BRDF.
     pub brdf: AnyBrdf,
     /// The scene.
     pub scene: Scene,
-    /// The widest vectors of the processor.
+    /// The widest vectors that the processor offers.
     pub vector_unit: &'static str,
-    /// Threads of the pool.
+    /// The number of threads of the pool.
     pub threads: usize,
-    /// What was measured.
+    /// The evaluators that were measured.
     pub evaluators: Vec<MeasuredEvaluator>,
-    /// Evaluators that could not be made, or are not for this scene.
+    /// The evaluators that do not exist for this BRDF.
     pub not_made: Vec<NotMade>,
-    /// The name of the evaluator that the plan takes; `None` where none is within the tolerance.
+    /// The name of the evaluator that the plan chooses; `None` if none is within the tolerance.
     pub plan: Option<&'static str>,
-    /// Why there is none.
+    /// The reason why there is no plan.
     pub no_plan: Option<String>,
 }
 
-/// What was measured of one evaluator. Errors are relative, against the value of the single point.
+/// The measurements of one evaluator. Errors are relative to the values of single points.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredEvaluator {
-    /// What it is called.
+    /// The name of the evaluator.
     pub name: &'static str,
-    /// By one thread, arrays in the caches.
+    /// The time on one thread, with arrays in the caches.
     pub ns_per_evaluation: f64,
-    /// By all threads, arrays in memory; `None` of single values.
+    /// The time on all threads, with arrays in memory; `None` for single values.
     pub ns_per_evaluation_all_threads: Option<f64>,
-    /// How many times as fast as single values, by one thread.
+    /// The time of single values divided by that of the evaluator, on one thread.
     pub times_as_fast: f64,
     /// The largest error.
     pub max_relative_error: f64,
-    /// 99 of 100 errors are not larger.
+    /// The 99th percentile of the errors.
     pub p99_relative_error: f64,
-    /// Root mean square.
+    /// The root mean square of the errors.
     pub rms_relative_error: f64,
-    /// What it took to be made.
+    /// The time that making the evaluator took.
     pub build_seconds: f64,
-    /// Its memory.
-    pub bytes: usize,
-    /// Whether no other one is faster without a larger error.
+    /// Whether no other evaluator is faster without a larger error.
     pub pareto: bool,
-    /// Why the plan does not take it; `None` of the one that it takes.
+    /// The reason why the plan does not choose it; `None` for the chosen evaluator.
     pub refusal: Option<String>,
 }
 
 /// An evaluator that was not measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NotMade {
-    /// What it is called.
+    /// The name of the evaluator.
     pub name: &'static str,
-    /// Why.
+    /// The reason.
     pub reason: String,
 }
 
 /// The columns of [`write_evaluator_trade`].
-pub const EVALUATOR_TRADE_COLUMNS: [&str; 11] = [
+pub const EVALUATOR_TRADE_COLUMNS: [&str; 10] = [
     "name",
     "ns_per_evaluation",
     "ns_per_evaluation_all_threads",
@@ -88,12 +86,11 @@ pub const EVALUATOR_TRADE_COLUMNS: [&str; 11] = [
     "p99_relative_error",
     "rms_relative_error",
     "build_seconds",
-    "bytes",
     "pareto",
     "plan",
 ];
 
-/// Measures every evaluator of a BRDF for a scene. Takes a second or so, more where tables are large.
+/// Measures every evaluator of a BRDF for a scene. This takes about a second.
 pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTrade {
     let survey = Survey::new(brdf, scene);
     let probe = Probe::new(brdf, &scene.domain, scene.coordinates, TIMED, 1);
@@ -129,7 +126,7 @@ pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTra
     }
 }
 
-/// The single values are what the others are compared with: they have no error.
+/// The single values, which are the reference and have no error.
 fn single_values(nanoseconds: f64) -> MeasuredEvaluator {
     MeasuredEvaluator {
         name: SINGLE_VALUES,
@@ -140,9 +137,8 @@ fn single_values(nanoseconds: f64) -> MeasuredEvaluator {
         p99_relative_error: 0.0,
         rms_relative_error: 0.0,
         build_seconds: 0.0,
-        bytes: 0,
         pareto: false,
-        refusal: Some("is what the others are measured by, one point after the other".to_owned()),
+        refusal: Some("is the reference, one point after the other".to_owned()),
     }
 }
 
@@ -157,7 +153,6 @@ fn measured(candidate: &Candidate, single: f64) -> Option<MeasuredEvaluator> {
         p99_relative_error: errors.p99,
         rms_relative_error: errors.rms,
         build_seconds: candidate.build_seconds,
-        bytes: candidate.bytes,
         pareto: false,
         refusal: reason(candidate),
     })
@@ -168,18 +163,18 @@ fn reason(candidate: &Candidate) -> Option<String> {
 }
 
 impl EvaluatorTrade {
-    /// The table that a person reads.
+    /// The measurements as a table of text.
     pub fn text(&self) -> String {
         let mut text = self.heading();
         let _ = writeln!(
             text,
-            "  {:<20}{:>8}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}",
-            "", "ns", "ns, all", "times", "max", "99 %", "rms", "made in", "bytes"
+            "  {:<20}{:>8}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}",
+            "", "ns", "ns, all", "times", "max", "99 %", "rms", "made in"
         );
         let _ = writeln!(
             text,
-            "  {:<20}{:>8}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}",
-            "", "1 thread", "threads", "as fast", "error", "error", "error", "ms", ""
+            "  {:<20}{:>8}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}",
+            "", "1 thread", "threads", "as fast", "error", "error", "error", "ms"
         );
         for evaluator in &self.evaluators {
             text += &self.line(evaluator);
@@ -207,7 +202,6 @@ impl EvaluatorTrade {
             domain,
             coordinates,
             tolerance,
-            memory_limit,
             evaluations,
         } = self.scene;
         let at = self.brdf.model_parameters();
@@ -223,8 +217,7 @@ impl EvaluatorTrade {
         };
         format!(
             "{}: k2 {}, kD {}, k1 {}, n {}, p {}\n  incidence {} deg, view {} deg, {azimuth}, given \
-             as {coordinates}\n  tolerance {tolerance:e}, {evaluations:e} evaluations, tables up to \
-             {memory_limit} bytes\n  {} vectors, {}\n\n",
+             as {coordinates}\n  tolerance {tolerance:e}, {evaluations:e} evaluations\n  {} vectors, {}\n\n",
             self.of,
             at.k2,
             at.kd,
@@ -242,7 +235,7 @@ impl EvaluatorTrade {
         let front = if evaluator.pareto { "*" } else { " " };
         let all = evaluator.ns_per_evaluation_all_threads;
         let mut line = format!(
-            "{front} {:<20}{:>8.2}{:>9}{:>8.2}{:>10}{:>10}{:>10}{:>10.2}{:>10}",
+            "{front} {:<20}{:>8.2}{:>9}{:>8.2}{:>10}{:>10}{:>10}{:>10.2}",
             evaluator.name,
             evaluator.ns_per_evaluation,
             all.map_or_else(String::new, |ns| format!("{ns:.2}")),
@@ -251,7 +244,6 @@ impl EvaluatorTrade {
             error(evaluator.p99_relative_error),
             error(evaluator.rms_relative_error),
             1e3 * evaluator.build_seconds,
-            evaluator.bytes,
         );
         if self.plan == Some(evaluator.name) {
             line += "  <- plan";
@@ -259,7 +251,11 @@ impl EvaluatorTrade {
         line + "\n"
     }
 
-    /// Error against time, both logarithmic; the plan's choice is marked.
+    /// The plot of error against time, both logarithmic, in which the choice of the plan is marked.
+    ///
+    /// # Errors
+    ///
+    /// [`PlotError`] if the plot cannot be drawn.
     pub fn figure(&self) -> Result<Figure, PlotError> {
         let point = |evaluator: &MeasuredEvaluator| TradePoint {
             label: evaluator.name.to_owned(),
@@ -286,7 +282,11 @@ fn error(error: f64) -> String {
     }
 }
 
-/// Writes a trade as CSV, a line for each evaluator that was measured.
+/// Writes a comparison as CSV, with one line for each evaluator that was measured.
+///
+/// # Errors
+///
+/// The error of the writer.
 pub fn write_evaluator_trade(trade: &EvaluatorTrade, writer: impl io::Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(EVALUATOR_TRADE_COLUMNS)?;
@@ -301,7 +301,6 @@ pub fn write_evaluator_trade(trade: &EvaluatorTrade, writer: impl io::Write) -> 
             e.p99_relative_error.to_string(),
             e.rms_relative_error.to_string(),
             e.build_seconds.to_string(),
-            e.bytes.to_string(),
             e.pareto.to_string(),
             (trade.plan == Some(e.name)).to_string(),
         ])?;
@@ -322,16 +321,15 @@ mod tests {
         let scene = Scene {
             domain: Domain::all((0.0, 1.0), (0.0, 1.2)).unwrap(),
             tolerance,
-            memory_limit: 1 << 20,
             ..Scene::default()
         };
-        trade_evaluators("a coating", &AnyBrdf::Paper(brdf), &scene)
+        trade_evaluators("a surface", &AnyBrdf::Paper(brdf), &scene)
     }
 
     #[test]
-    fn everything_is_measured_or_has_its_reason() {
+    fn every_evaluator_is_measured_or_has_a_reason() {
         let trade = trade(1e-3);
-        assert_eq!(trade.evaluators.len() + trade.not_made.len(), 9);
+        assert_eq!(trade.evaluators.len() + trade.not_made.len(), 6);
         assert!(trade.not_made.iter().all(|e| !e.reason.is_empty()));
         let plan = trade.plan.unwrap();
         let chosen = trade.evaluators.iter().find(|e| e.name == plan).unwrap();
@@ -341,14 +339,14 @@ mod tests {
             assert_eq!(e.refusal.is_none(), e.name == plan);
         }
         let front: Vec<_> = trade.evaluators.iter().filter(|e| e.pareto).collect();
-        // The fastest and the most accurate one are always on it.
+        // The front includes the fastest and the most accurate evaluator.
         assert!(front.len() >= 2 && front.iter().any(|e| e.max_relative_error == 0.0));
         let text = trade.text();
         assert!(text.contains("<- plan") && text.contains(&format!("plan: {plan}")));
     }
 
     #[test]
-    fn csv_and_json_hold_the_same_numbers() {
+    fn csv_and_json_contain_the_same_numbers() {
         let trade = trade(1e-3);
         let mut bytes = Vec::new();
         write_evaluator_trade(&trade, &mut bytes).unwrap();
@@ -364,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tolerance_that_nothing_meets_is_said() {
+    fn an_unattainable_tolerance_is_reported() {
         let trade = trade(1e-30);
         assert_eq!(trade.plan, None);
         assert!(trade.text().contains("no plan: no evaluator is within"));

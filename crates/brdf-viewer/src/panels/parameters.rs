@@ -1,6 +1,6 @@
 //! The model and its parameters at the right, and below them what follows and the fit.
 
-use brdf_core::brdf::N_DOMAIN;
+use brdf_core::N_DOMAIN;
 use brdf_fit::format::digits;
 use brdf_fit::model::{Model, Parameter};
 use egui::{

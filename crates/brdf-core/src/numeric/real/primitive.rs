@@ -1,9 +1,9 @@
-//! `f64` and `f32`: what differs between them.
+//! The constants and operations that differ between `f64` and `f32`.
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number as it stands in an array: `f64` or `f32`.
+/// An element of an array: `f64` or `f32`.
 pub trait Primitive:
     Copy
     + Debug
@@ -18,25 +18,26 @@ pub trait Primitive:
     + Neg<Output = Self>
     + 'static
 {
-    /// 1.5 times the smallest number from which on there are no fractions.
+    /// 1.5 times the smallest number above which all numbers are integers.
     const ROUNDING_SHIFT: Self;
 
-    /// Whether fewer terms of a series do.
+    /// Whether the precision is that of `f32`, for which a series needs fewer terms.
     const SINGLE: bool;
 
-    /// The nearest number to pi/2, and what it lacks to pi/2.
+    /// The nearest number to pi/2, and the difference of pi/2 to it.
     const FRAC_PI_2: [f64; 2];
 
-    /// ln 2 in two parts, the first with zeros at its end so that small multiples of it are exact.
+    /// ln 2 as the sum of two numbers. The last bits of the first are 0, so that small multiples of it
+    /// are exact.
     const LN_2: [f64; 2];
 
-    /// The logarithm of the smallest normal number, rounded up.
+    /// The logarithm of the smallest normal number, rounded up to an integer.
     const LN_SMALLEST: f64;
 
     /// The nearest number to an `f64`.
     fn narrow(value: f64) -> Self;
 
-    /// As `f64`.
+    /// The number as `f64`.
     fn widen(self) -> f64;
 
     /// The square root.
@@ -45,13 +46,13 @@ pub trait Primitive:
     /// The absolute value.
     fn magnitude(self) -> Self;
 
-    /// self a + b in one rounding.
+    /// self a + b, rounded once.
     fn fused_mul_add(self, a: Self, b: Self) -> Self;
 
-    /// 2^k for a whole k in the range of the exponents of normal numbers.
+    /// 2^k for an integer k within the exponents of normal numbers.
     fn power_of_two(k: Self) -> Self;
 
-    /// (m, k) with self = m 2^k, m in [sqrt(1/2), sqrt(2)), of a positive normal number.
+    /// (m, k) with self = m 2^k and m in [sqrt(1/2), sqrt(2)), for a positive normal number.
     fn mantissa_exponent(self) -> (Self, Self);
 }
 
@@ -96,11 +97,11 @@ impl Primitive for f64 {
 
     #[inline(always)]
     fn mantissa_exponent(self) -> (Self, Self) {
-        // Counted from sqrt(1/2), the exponent is the whole part.
+        // Relative to sqrt(1/2), the exponent bits are the integer part of the binary logarithm.
         const ROOT_HALF: u64 = std::f64::consts::FRAC_1_SQRT_2.to_bits();
         let offset = self.to_bits().wrapping_sub(ROOT_HALF);
         let mantissa = Self::from_bits((offset & 0x000f_ffff_ffff_ffff).wrapping_add(ROOT_HALF));
-        // The exponent, -1022 to 1023, as the last bits of a number beside the shift.
+        // The exponent, -1022 to 1023, becomes the last bits of a number next to the shift.
         let biased = (offset >> 52).wrapping_add(1023) & 0xfff;
         let exponent = Self::from_bits(Self::ROUNDING_SHIFT.to_bits() + biased)
             - (Self::ROUNDING_SHIFT + 1023.0);
@@ -116,7 +117,10 @@ impl Primitive for f32 {
     const LN_SMALLEST: f64 = -87.0;
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the nearest is meant")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "rounds to the nearest `f32`"
+    )]
     fn narrow(value: f64) -> Self {
         value as Self
     }

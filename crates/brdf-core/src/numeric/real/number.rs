@@ -1,25 +1,13 @@
-//! The numbers that a formula is evaluated in.
-//!
-//! Every term of the model is written once, over [`Real`], and serves one point in `f64` and many
-//! points at once in `f64` and `f32`: a loop over plain arithmetic, without a call or a branch,
-//! becomes vector code. Users meet `f64` and `f32` only.
-
-#![expect(
-    clippy::inline_always,
-    reason = "what is not inlined does not become vector code"
-)]
-
-mod elementary;
-mod fused;
-mod primitive;
-
-pub use fused::Fused;
-pub use primitive::Primitive;
+//! The trait of all numbers that the terms of the model are evaluated in.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number that the terms of the model are evaluated in: `f64`, `f32`, or one of them with multiply
-/// and add in one rounding ([`Fused`]).
+use super::primitive::Primitive;
+
+/// A number that the terms of the model are evaluated in: `f64`, `f32`, or [`Fused`](super::Fused)
+/// of one of them, whose multiplication and addition are rounded once.
+///
+/// [`Elementary`](super::Elementary) adds the exponential function and the logarithm.
 pub trait Real:
     Copy
     + PartialOrd
@@ -29,16 +17,16 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// What stands in arrays: `f64` or `f32`.
+    /// The number's form in an array: `f64` or `f32`.
     type Stored: Primitive;
 
-    /// From an array.
+    /// The number of an array's element.
     fn load(stored: Self::Stored) -> Self;
 
-    /// Into an array.
+    /// The number as an array's element.
     fn store(self) -> Self::Stored;
 
-    /// self a + b, in one rounding where the number is made for that.
+    /// self a + b, rounded once in [`Fused`](super::Fused) numbers and twice elsewhere.
     fn mul_add(self, a: Self, b: Self) -> Self;
 
     /// The nearest number to a constant.
@@ -71,30 +59,18 @@ pub trait Real:
         if self < other { self } else { other }
     }
 
-    /// One of two numbers, without a branch.
+    /// `then` if the condition is true and `otherwise` if not, without a branch.
     #[inline(always)]
     fn select(condition: bool, then: Self, otherwise: Self) -> Self {
         std::hint::select_unpredictable(condition, then, otherwise)
     }
 
-    /// The whole number nearest to this one, which is below 2^21 in magnitude.
+    /// The nearest integer, for numbers below 2^21 in magnitude; ties go to the even integer.
     #[inline(always)]
     fn round(self) -> Self {
-        // Adding 1.5 times the first number without a fraction rounds the fraction off.
+        // Adding 1.5 times the smallest number without a fraction rounds the fraction off.
         let shift = Self::load(Self::Stored::ROUNDING_SHIFT);
         (self + shift) - shift
-    }
-
-    /// e^self; 0 below the range of normal numbers.
-    #[inline(always)]
-    fn exp(self) -> Self {
-        elementary::exp(self)
-    }
-
-    /// The natural logarithm of a positive normal number.
-    #[inline(always)]
-    fn ln(self) -> Self {
-        elementary::ln(self)
     }
 }
 
@@ -117,7 +93,7 @@ impl<T: Primitive> Real for T {
     }
 }
 
-/// The polynomial of the coefficients, lowest first, by Horner's scheme. There is at least one.
+/// The polynomial of at least one coefficient, the lowest power first, by Horner's scheme.
 #[inline(always)]
 pub(crate) fn horner<R: Real>(x: R, coefficients: &[f64]) -> R {
     let highest = R::of(coefficients[coefficients.len() - 1]);

@@ -1,11 +1,13 @@
-//! Numbers whose multiplications and additions are one operation.
+//! Numbers whose multiplication and addition are one operation.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Primitive, Real};
+use super::number::Real;
+use super::primitive::Primitive;
 
-/// A number of which [`mul_add`](Real::mul_add) has one rounding: for processors that do so in one
-/// operation, elsewhere it would be a slow call.
+/// A number whose [`mul_add`](Real::mul_add) is rounded once.
+///
+/// It is for processors with such an instruction; on others each `mul_add` is a slow call.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Fused<T>(T);
 

@@ -1,9 +1,9 @@
 //! Sine and cosine over the ranges that a geometry needs, without branches.
 //!
-//! A library's functions serve any angle and choose their way by its size, which costs more than
-//! the polynomial where the angles come in no order. Here the ranges are known: zenith angles in
-//! [0, pi/2], half of their difference in [-pi/4, pi/4]; there seven terms of Taylor's series leave
-//! less than 1e-17 of the result.
+//! The functions of a library accept any angle and branch on its magnitude, which costs more than
+//! the polynomial if the angles are unordered. Here the ranges are known: zenith angles are in
+//! [0, pi/2] and half of their difference is in [-pi/4, pi/4], where seven terms of the Taylor
+//! series have a relative error below 1e-17.
 
 #![expect(
     clippy::inline_always,
@@ -12,7 +12,7 @@
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 
-use crate::real::{Primitive, Real, horner};
+use super::real::{Primitive, Real, horner};
 
 /// The coefficients of x^3, x^5, ... in sin x.
 const SINE: [f64; 7] = [
@@ -22,7 +22,7 @@ const SINE: [f64; 7] = [
     1.0 / 362_880.0,
     -1.0 / 39_916_800.0,
     1.0 / 6_227_020_800.0,
-    // The next term as it is near the end of the range, where alone it matters.
+    // Includes the next term as it is near the end of the range, the only place where it matters.
     -1.0 / 1_307_674_368_000.0 + 0.58 / 355_687_428_096_000.0,
 ];
 
@@ -51,12 +51,12 @@ fn cos_eighth<R: Real>(x: R) -> R {
     let one = R::of(1.0);
     let half = R::of(0.5) * z;
     let leading = one - half;
-    // The rounding of 1 - z/2 is carried into the small terms.
+    // The rounding error of 1 - z/2 is added to the small terms.
     leading + (z * z).mul_add(series(z, COSINE), (one - leading) - half)
 }
 
-/// Estrin's scheme: pairs, and pairs of pairs, so that the terms do not wait for each other. Four
-/// terms are enough for single precision.
+/// The polynomial by Estrin's scheme, whose terms do not depend on each other. Single precision
+/// needs four of the terms.
 #[inline(always)]
 fn series<R: Real>(z: R, coefficients: [f64; 7]) -> R {
     if R::Stored::SINGLE {
@@ -69,8 +69,10 @@ fn series<R: Real>(z: R, coefficients: [f64; 7]) -> R {
     high.mul_add(z2 * z2, low)
 }
 
-/// (sin x, cos x) for x in [0, pi/2], each to 1 ulp of itself: beyond pi/4 they are the cosine and
-/// sine of pi/2 - x, a difference that is exact but for the rest of pi/2.
+/// (sin x, cos x) for x in [0, pi/2], each to 1 ulp.
+///
+/// Beyond pi/4 they are the cosine and the sine of pi/2 - x. That difference is exact, apart from
+/// the part of pi/2 that its nearest number lacks and that is added.
 #[inline(always)]
 pub(crate) fn sin_cos_quarter<R: Real>(x: R) -> (R, R) {
     let [right_angle, rest] = R::Stored::FRAC_PI_2.map(R::of);
@@ -79,7 +81,7 @@ pub(crate) fn sin_cos_quarter<R: Real>(x: R) -> (R, R) {
     exchanged_if(beyond, sin_eighth(y), cos_eighth(y))
 }
 
-/// (b, a) or (a, b), without a branch.
+/// (b, a) if `exchange` is true and (a, b) if not, without a branch.
 #[inline(always)]
 pub(crate) fn exchanged_if<R: Real>(exchange: bool, a: R, b: R) -> (R, R) {
     (R::select(exchange, b, a), R::select(exchange, a, b))
@@ -90,18 +92,18 @@ pub(crate) fn exchanged_if<R: Real>(exchange: bool, a: R, b: R) -> (R, R) {
 pub(crate) fn sin2_cos2_of_half<R: Real>(phi: R) -> (R, R) {
     let half = R::of(0.5) * phi.abs();
     let [right_angle, rest] = R::Stored::FRAC_PI_2.map(R::of);
-    // The distance to the nearest of 0, pi/2 and pi, in which the squares are symmetric.
+    // The squares are symmetric in the distance to the nearest of 0, pi/2 and pi.
     let about_right_angle = (half > R::of(FRAC_PI_4)) & (half <= R::of(3.0 * FRAC_PI_4));
     let from_right_angle = (half - right_angle) - rest;
     let from_straight = (half - (right_angle + right_angle)) - (rest + rest);
     let outside = R::select(half > right_angle, from_straight, half);
     let sin = sin_eighth(R::select(about_right_angle, from_right_angle, outside));
     let sin2 = sin * sin;
-    // At most 1/2, so that 1 - sin^2 loses nothing.
+    // sin^2 is at most 1/2, so that 1 - sin^2 is accurate.
     exchanged_if(about_right_angle, sin2, R::of(1.0) - sin2)
 }
 
-/// [`sin2_cos2_of_half`] of any finite phi.
+/// [`sin2_cos2_of_half`] for any finite phi.
 #[inline(always)]
 pub(crate) fn sin2_cos2_of_any_half(phi: f64) -> (f64, f64) {
     if phi.abs() <= TAU {
@@ -119,10 +121,10 @@ mod tests {
 
     use super::*;
 
-    /// What the `f64` nearest to pi/2 lacks to it; half of what that nearest to pi lacks.
+    /// The difference of pi/2 to the nearest `f64`, half of the difference of pi to its nearest.
     const REST: f64 = f64::FRAC_PI_2[1];
 
-    /// Distance in units of the last place of the expected value.
+    /// The error in units of the last place of the expected value.
     fn ulps(value: f64, expected: f64) -> f64 {
         let ulp = expected.abs().next_up() - expected.abs();
         (value - expected).abs() / ulp

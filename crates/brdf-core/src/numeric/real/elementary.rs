@@ -1,11 +1,29 @@
-//! Exponential function and logarithms without a branch or a call, and with the same digits on
-//! every machine.
+//! The exponential function and the logarithm, without a branch or a call, and with the same digits
+//! on every machine.
 
 use std::f64::consts::LOG2_E;
 
-use super::{Primitive, Real, horner};
+use super::number::{Real, horner};
+use super::primitive::Primitive;
 
-/// 1/k!, k from 0.
+/// The exponential function and the logarithm of any [`Real`].
+pub trait Elementary: Real {
+    /// e^self, to 1 ulp; 0 below the range of normal numbers and infinity above it.
+    #[inline(always)]
+    fn exp(self) -> Self {
+        exp(self)
+    }
+
+    /// The natural logarithm of a positive normal number, to 1 ulp.
+    #[inline(always)]
+    fn ln(self) -> Self {
+        ln(self)
+    }
+}
+
+impl<R: Real> Elementary for R {}
+
+/// The coefficients 1/k! of e^x, k from 0.
 const EXPONENTIAL: [f64; 14] = [
     1.0,
     1.0,
@@ -23,7 +41,7 @@ const EXPONENTIAL: [f64; 14] = [
     1.0 / 6_227_020_800.0,
 ];
 
-/// 2/(2k + 3), k from 0.
+/// The coefficients 2/(2k + 3) of 2 artanh s - 2 s, k from 0.
 const LOGARITHM: [f64; 11] = [
     2.0 / 3.0,
     2.0 / 5.0,
@@ -38,9 +56,9 @@ const LOGARITHM: [f64; 11] = [
     2.0 / 23.0,
 ];
 
-/// e^x to 1 ulp: 2^k e^r with |r| <= ln(2)/2. 0 below the normal numbers, infinity above them.
+/// e^x = 2^k e^r with |r| <= ln(2)/2.
 #[inline(always)]
-pub(super) fn exp<R: Real>(x: R) -> R {
+fn exp<R: Real>(x: R) -> R {
     let limit = R::of(R::Stored::LN_SMALLEST);
     let inside = x.max(limit).min(-limit);
     let k = (inside * R::of(LOG2_E)).round();
@@ -53,10 +71,10 @@ pub(super) fn exp<R: Real>(x: R) -> R {
     R::select(x < limit, R::of(0.0), above)
 }
 
-/// ln x to 1 ulp: k ln 2 + ln(1 + f), and with s = f/(2 + f), ln(1 + f) = 2 artanh s, whose first
-/// term 2 s = f - s f.
+/// ln x = k ln 2 + ln(1 + f) with x = 2^k (1 + f). With s = f/(2 + f), ln(1 + f) = 2 artanh s, whose
+/// first term is 2 s = f - s f.
 #[inline(always)]
-pub(super) fn ln<R: Real>(x: R) -> R {
+fn ln<R: Real>(x: R) -> R {
     let (mantissa, exponent) = x.store().mantissa_exponent();
     let (m, k) = (R::load(mantissa), R::load(exponent));
     let f = m - R::of(1.0);
@@ -74,7 +92,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::real::Fused;
+    use crate::numeric::Fused;
 
     /// Relative error in units of the last place.
     fn error<R: Real>(value: R, exact: f64) -> f64 {

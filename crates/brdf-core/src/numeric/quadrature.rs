@@ -1,7 +1,8 @@
-//! Adaptive integration, for the reflectances.
+//! Adaptive integration by the Gauss-Kronrod rule.
 
-/// Nodes in (0, 1) of the 15-point Kronrod rule on [-1, 1], the node 0 aside, with the weights of
-/// Kronrod and, for every second one, of the 7-point Gauss rule inside it (Kronrod 1964).
+/// The positive nodes of the 15-point Kronrod rule on [-1, 1], each with its weight in that rule and
+/// in the 7-point Gauss rule, which uses every second node and has weight 0 at the others (Kronrod
+/// 1964).
 const NODES: [(f64, f64, f64); 7] = [
     (0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0),
     (
@@ -23,23 +24,25 @@ const NODES: [(f64, f64, f64); 7] = [
     ),
     (0.207_784_955_007_898_46, 0.204_432_940_075_298_9, 0.0),
 ];
+
+/// The weights of the node 0 in the Kronrod rule and in the Gauss rule.
 const CENTRE: (f64, f64) = (0.209_482_141_084_727_82, 0.417_959_183_673_469_4);
 
-/// Halvings of one integral before the estimates are taken as they are: ten times what a peak and
-/// its kinks need. Where an integral has no end, it must not take for ever.
+/// The number of halvings in one integral, after which the estimates are accepted as they are. It is
+/// ten times the number that a peak with kinks needs and ends the work on divergent integrals.
 const MAX_HALVINGS: u32 = 500;
 
 /// The integral of a non-negative function over the panels between ascending `breaks`.
 ///
 /// A panel is halved until the Gauss and Kronrod estimates differ by less than `tolerance` times
 /// the first estimate of the whole integral; the Kronrod estimate, which is returned, is far better
-/// than that. The function should be smooth between the breaks; elsewhere it costs more.
+/// than that. A function that is not smooth between the breaks needs more evaluations.
 pub(crate) fn integrate<const N: usize>(
     f: &impl Fn(f64) -> f64,
     breaks: [f64; N],
     tolerance: f64,
 ) -> f64 {
-    // One more than there are: the last stays empty, as do those between equal breaks.
+    // There is one panel less than breaks: the last stays empty, as do those between equal breaks.
     let mut panels = [Panel::default(); N];
     for (panel, ends) in panels.iter_mut().zip(breaks.windows(2)) {
         if ends[0] < ends[1] {
@@ -54,7 +57,7 @@ pub(crate) fn integrate<const N: usize>(
         .sum()
 }
 
-/// A piece of the range, with its estimate and the distance between the two rules.
+/// A part of the range, with its estimate and the difference between the two rules.
 #[derive(Clone, Copy, Default)]
 struct Panel {
     from: f64,
@@ -85,7 +88,7 @@ impl Panel {
     }
 }
 
-/// The Kronrod estimate and its distance to the Gauss estimate.
+/// The Kronrod estimate and the magnitude of its difference to the Gauss estimate.
 fn rule(f: &impl Fn(f64) -> f64, a: f64, b: f64) -> (f64, f64) {
     let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
     let centre = f(middle);

@@ -4,7 +4,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use brdf_fit::export::{AngleGrid, ExportOptions, Material, Target, export, export_beside};
+use brdf_fit::export::{AngleGrid, ExportOptions, Material, Target, export, export_companion};
 use brdf_fit::output::{self, check_outputs, print_error, write_file};
 use clap::Parser;
 
@@ -89,7 +89,8 @@ fn run(arguments: &Arguments) -> Result<(), String> {
     let (mut bytes, mut bytes_beside) = (Vec::new(), Vec::new());
     let found = export(&coating, arguments.to, &options, &mut bytes);
     let found = found.map_err(|error| error.to_string())?;
-    export_beside(arguments.to, &options, &mut bytes_beside).map_err(|error| error.to_string())?;
+    export_companion(arguments.to, &options, &mut bytes_beside)
+        .map_err(|error| error.to_string())?;
     let Some(path) = output else {
         if let Some(found) = &found {
             // Where standard error is gone, nobody is there to be told.
@@ -149,7 +150,7 @@ impl Arguments {
 
     /// The second file, of a form that has one: beside the first, which then has to be named.
     fn beside(&self) -> Result<Option<PathBuf>, String> {
-        let Some(extension) = self.to.beside() else {
+        let Some(extension) = self.to.companion_extension() else {
             return Ok(None);
         };
         let output = self.output.as_ref();
@@ -162,9 +163,9 @@ impl Arguments {
     /// What is exported.
     fn coating(&self) -> Result<Material, String> {
         let all = Material::read(&self.fits).map_err(|error| error.to_string())?;
-        let of_file = all.of_file(self.file.as_deref());
+        let of_file = all.for_file(self.file.as_deref());
         let chosen = of_file.and_then(|coating| match self.wavelength {
-            Some(wavelength) => coating.of_wavelength(wavelength),
+            Some(wavelength) => coating.at_wavelength(wavelength),
             None => Ok(coating),
         });
         chosen.map_err(|error| format!("{}: {error}", self.fits.display()))

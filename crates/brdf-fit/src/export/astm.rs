@@ -1,43 +1,46 @@
-//! ASTM E1392 text in Cornell's layout, read again by [`crate::read::astm`], which describes the
-//! format: angles in radians, phi_i = 0, a column for each wavelength.
+//! ASTM E1392 text in the layout of Cornell University; [`read::astm`](crate::read::astm) describes
+//! the format. Angles are in radians, phi_i is 0, and each wavelength has a column.
 //!
-//! Values between the entries are meant to be interpolated linearly in theta_i, theta_s and phi_s,
-//! as libbsdf does. The angles form a grid; phi_s goes from 0, the source's side, to pi, the other half
-//! is its mirror image.
+//! Between the entries f_r is to be interpolated linearly in theta_i, theta_s and phi_s, as libbsdf
+//! does. The angles form a grid; phi_s ranges from 0, the source's side, to pi, and the other half
+//! of the azimuths mirrors it.
 
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
 use brdf_core::AnyBrdf;
 
-use super::domain::{LIMIT_DEG, from_narrow, spread, value, write_comments};
-use super::interpolated::{At, Table, Tabulated};
+use super::comments;
+use super::domain::{MAX_ZENITH_DEG, continued_value, dense_near_zero, evenly_spaced};
+use super::error::ExportError;
+use super::interpolated::{Angles, Table, Tabulated};
 use super::material::{Fitted, Material};
-use super::target::ExportError;
 
-/// Writes all fits of the coating, or the only one where it has no wavelength.
+/// Writes all fits of the material.
 ///
-/// Errors: several fits, of which one has no wavelength; the tolerance cannot be kept to.
+/// # Errors
+///
+/// One of several fits has no wavelength; a table within the tolerance is too large; writing fails.
 pub(super) fn write(
-    coating: &Material,
+    material: &Material,
     tolerance: f64,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
-    if coating.fits.iter().any(|fit| fit.wavelength_um.is_none()) {
-        coating.only()?;
+    if material.fits.iter().any(|fit| fit.wavelength_um.is_none()) {
+        material.only()?;
     }
     let function = BySphericalAngles {
-        brdfs: coating.fits.iter().map(|fit| fit.brdf).collect(),
+        brdfs: material.fits.iter().map(|fit| fit.brdf).collect(),
     };
     let table = Table::within(&function, tolerance)
         .map_err(|error| ExportError::tolerance(tolerance, &error))?;
-    write_header(&coating.fits, tolerance, &table, writer)?;
+    write_header(&material.fits, tolerance, &table, writer)?;
     let [theta_i, theta_s, phi_s] = &table.axes;
     for (i, theta_i) in theta_i.iter().enumerate() {
         for (j, theta_s) in theta_s.iter().enumerate() {
             for (k, phi_s) in phi_s.iter().enumerate() {
                 write!(writer, "{theta_i},0,{theta_s},{phi_s}")?;
-                for channel in 0..coating.fits.len() {
+                for channel in 0..material.fits.len() {
                     write!(writer, ",{:e}", table.value([i, j, k], channel))?;
                 }
                 writeln!(writer)?;
@@ -53,7 +56,7 @@ fn write_header(
     table: &Table,
     writer: &mut dyn Write,
 ) -> io::Result<()> {
-    write_comments(fits, tolerance, table, writer)?;
+    comments::write(fits, tolerance, table, writer)?;
     writeln!(
         writer,
         "# interpolation: linear in theta_i, theta_s and phi_s"
@@ -71,7 +74,8 @@ fn write_header(
     )
 }
 
-/// In nanometres, in the decimals of the micrometres.
+/// The name of the column of a fit: its wavelength in nanometres, with the decimal digits of the
+/// micrometres.
 fn column(fit: &Fitted) -> String {
     let Some(um) = fit.wavelength_um else {
         return "BRDF".to_owned();
@@ -92,26 +96,26 @@ impl Tabulated for BySphericalAngles {
     }
 
     fn ranges(&self) -> [(f64, f64); 3] {
-        let limit = LIMIT_DEG.to_radians();
+        let limit = MAX_ZENITH_DEG.to_radians();
         [(0.0, limit), (0.0, limit), (0.0, PI)]
     }
 
-    fn value(&self, channel: usize, [theta_i, theta_s, phi_s]: At) -> f64 {
-        value(&self.brdfs[channel], theta_i, theta_s, phi_s)
+    fn value(&self, channel: usize, at: Angles) -> f64 {
+        continued_value(&self.brdfs[channel], at)
     }
 
-    fn is_inside(&self, _: At) -> bool {
+    fn tolerance_applies(&self, _: Angles) -> bool {
         true
     }
 
     fn samples(&self) -> [Vec<f64>; 3] {
-        let thetas = spread(0.0, LIMIT_DEG.to_radians(), 18);
-        let forward = from_narrow(PI).into_iter().map(|phi| PI - phi);
+        let thetas = evenly_spaced(0.0, MAX_ZENITH_DEG.to_radians(), 18);
+        let forward = dense_near_zero(PI).into_iter().map(|phi| PI - phi);
         [thetas.clone(), thetas, forward.collect()]
     }
 
-    /// Near the specular direction.
-    fn narrow(&self, axis: usize, angle: f64) -> Vec<At> {
+    /// Points with equal zenith angles, about the specular direction.
+    fn lobe_points(&self, axis: usize, angle: f64) -> Vec<Angles> {
         let [thetas, _, phis] = self.samples();
         match axis {
             0 | 1 => phis.into_iter().map(|phi| [angle, angle, phi]).collect(),
@@ -126,28 +130,23 @@ impl Tabulated for BySphericalAngles {
         (angle * 1e6).round() / 1e6
     }
 
-    fn is_defined(&self, _: At) -> bool {
+    fn is_defined(&self, _: Angles) -> bool {
         true
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use brdf_core::{Parameters, ThreeParameterBrdf};
-
     use super::*;
     use crate::Measurements;
+    use crate::export::test_fits::of_paper;
     use crate::read::ReadOptions;
     use crate::scan::Format;
 
     fn fitted(wavelength_um: Option<f64>, k1: f64) -> Fitted {
-        let parameters = Parameters::new(0.225, 0.246, k1).unwrap();
         Fitted {
-            file: "paint.csv".to_owned(),
             wavelength_um,
-            brdf: ThreeParameterBrdf::new(parameters, 1.62).unwrap().into(),
-            e_percent: 4.02,
-            psi_max_deg: 70.0,
+            ..of_paper([0.225, 0.246, k1, 1.62])
         }
     }
 
@@ -178,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fit_without_a_wavelength_is_a_brdf() {
+    fn a_fit_without_a_wavelength_is_written_alone() {
         let scan = written(vec![fitted(None, 0.9)]);
         assert_eq!(scan.wavelengths(), [None]);
         let two = Material {
@@ -189,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn the_lobe_stands_where_the_readers_of_others_expect_it() {
+    fn the_lobe_is_at_the_azimuth_that_readers_of_the_format_expect() {
         let scan = written(vec![fitted(None, 0.3)]);
         let largest = |a: &&crate::Measurement, b: &&crate::Measurement| a.brdf.total_cmp(&b.brdf);
         let near = |r: &&crate::Measurement| (r.psi - 0.5).abs() < 0.1;

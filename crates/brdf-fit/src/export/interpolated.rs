@@ -1,56 +1,58 @@
-//! Tables over three angles whose entries are so close that what is interpolated linearly between
-//! them keeps to a tolerance.
+//! Tables over three angles, sampled so densely that linear interpolation between their entries
+//! stays within a tolerance.
 //!
-//! Each axis is refined by itself: the error of linear interpolation along it is kept below a
-//! share of the tolerance at many places of the other two. The whole table is then checked
-//! between its entries; where it fails, these places are added and the share is lowered.
+//! Each axis is refined on its own: the error of linear interpolation along it is kept below a
+//! fraction of the tolerance at many points of the other two axes. The whole table is then checked
+//! between its entries. Where it fails, the failing points are added to those at which the axes are
+//! refined, and the fraction is reduced.
 
 use rand::rngs::StdRng;
 use rand::{RngExt as _, SeedableRng as _};
 
-/// More entries are no table that a program wants to read.
-pub(super) const MOST_ENTRIES: usize = 4_000_000;
+/// The largest number of entries, over all channels: a text of larger tables takes hundreds of
+/// megabytes.
+pub(super) const MAX_ENTRIES: usize = 4_000_000;
 
-/// More angles on one axis are none either: a table of them has next to none on the others.
-const MOST_ANGLES: usize = 2000;
+/// The largest number of angles on one axis: with more, the other axes would have almost none.
+const MAX_ANGLES: usize = 2000;
 
-/// Where the search for a tolerance that can be kept to begins.
-const SMALLEST_SEARCHED: f64 = 1e-3;
+/// The smallest tolerance that the search for a reachable one tries.
+const MIN_SEARCHED_TOLERANCE: f64 = 1e-3;
 
-/// So often a table is refined; each time the share is four fifths of what it was.
-const ROUNDS: usize = 16;
+/// How often a table is refined; each time the allowed error along an axis is multiplied by 0.8.
+const MAX_ROUNDS: usize = 16;
 
-/// About so many cells are checked, each at two points.
+/// About the number of cells that are checked, each at two points.
 const CHECKED_CELLS: usize = 500_000;
 
-/// Of the places where a table fails so many are looked at in the next round.
-const WORST: usize = 200;
+/// How many of the failing points, the worst first, the next round takes into account.
+const WORST_POINTS: usize = 200;
 
 /// Three angles, in the order of the axes.
-pub(super) type At = [f64; 3];
+pub(super) type Angles = [f64; 3];
 
-/// What is tabulated: one function or more, of three angles.
+/// What is tabulated: one or more functions of three angles, called channels.
 pub(super) trait Tabulated {
-    /// How many functions.
+    /// The number of functions.
     fn channels(&self) -> usize;
-    /// From where to where each angle goes.
+    /// The first and the last angle of each axis.
     fn ranges(&self) -> [(f64, f64); 3];
-    /// The value of a function; where it has none, one that continues it.
-    fn value(&self, channel: usize, at: At) -> f64;
-    /// Whether the tolerance holds there.
-    fn is_inside(&self, at: At) -> bool;
-    /// Angles of each axis, at which the other axes are refined.
+    /// The value of a function; where it is not defined, that of a continuation.
+    fn value(&self, channel: usize, at: Angles) -> f64;
+    /// Whether the tolerance applies there.
+    fn tolerance_applies(&self, at: Angles) -> bool;
+    /// Angles of each axis; their combinations are the points at which the other axes are refined.
     fn samples(&self) -> [Vec<f64>; 3];
-    /// Further places where to look when an axis is refined near an angle: where the function is
-    /// narrow.
-    fn narrow(&self, axis: usize, angle: f64) -> Vec<At>;
-    /// The angle that is written.
+    /// Additional points for the refinement of an axis near an angle, where the functions may have
+    /// a narrow lobe.
+    fn lobe_points(&self, axis: usize, angle: f64) -> Vec<Angles>;
+    /// The angle as it is written.
     fn rounded(&self, angle: f64) -> f64;
-    /// Whether the function itself has a value there.
-    fn is_defined(&self, at: At) -> bool;
+    /// Whether the functions themselves, not only their continuations, are defined there.
+    fn is_defined(&self, at: Angles) -> bool;
 }
 
-/// A table that keeps to its tolerance.
+/// A table within its tolerance.
 pub(super) struct Table {
     /// The angles of each axis, ascending.
     pub(super) axes: [Vec<f64>; 3],
@@ -58,46 +60,53 @@ pub(super) struct Table {
     values: Vec<f64>,
     /// The largest relative error found between the entries.
     pub(super) largest_error: f64,
-    /// At so many points.
+    /// The number of points at which the error was computed.
     pub(super) checked: usize,
 }
 
-/// No table keeps to the tolerance.
+/// Every table within the tolerance is too large.
 pub(super) struct Unreachable {
-    /// One that a table does keep to; the next smaller one that was tried is too little.
+    /// A tolerance that a table satisfies; the next smaller one that was tried is too small.
     pub(super) reachable: f64,
 }
 
 impl Table {
-    /// The table that keeps to a relative tolerance.
+    /// The table within a relative tolerance.
     ///
-    /// Errors: it would have too many entries.
+    /// # Errors
+    ///
+    /// It has more than [`MAX_ENTRIES`].
     pub(super) fn within(function: &impl Tabulated, tolerance: f64) -> Result<Self, Unreachable> {
         let mut failed = Vec::new();
         if let Some(table) = Self::refined(function, tolerance, &mut failed) {
             return Ok(table);
         }
-        let mut reachable = tolerance.max(SMALLEST_SEARCHED);
+        let mut reachable = tolerance.max(MIN_SEARCHED_TOLERANCE);
         loop {
-            reachable = in_two_digits(1.4 * reachable);
+            reachable = rounded_up(1.4 * reachable);
             let found = Self::refined(function, reachable, &mut failed).is_some();
-            // An error of all there is: such a table is none.
+            // A table with an error of 100 % is of no use: the search ends there.
             if found || reachable >= 1.0 {
                 return Err(Unreachable { reachable });
             }
         }
     }
 
-    /// `None` where there are too many entries. `failed` are places where a table failed before.
-    fn refined(function: &impl Tabulated, tolerance: f64, failed: &mut Vec<At>) -> Option<Self> {
-        let mut share = 0.5 * tolerance;
-        for _ in 0..ROUNDS {
-            let mut table = Self::new(function, axes(function, failed, share)?);
+    /// `None` where there are too many entries. `failed` are the points at which earlier tables
+    /// failed.
+    fn refined(
+        function: &impl Tabulated,
+        tolerance: f64,
+        failed: &mut Vec<Angles>,
+    ) -> Option<Self> {
+        let mut max_error = 0.5 * tolerance;
+        for _ in 0..MAX_ROUNDS {
+            let mut table = Self::new(function, axes(function, failed, max_error)?);
             failed.extend(table.check(function, tolerance));
             if table.largest_error <= tolerance {
                 return Some(table);
             }
-            share *= 0.8;
+            max_error *= 0.8;
         }
         None
     }
@@ -111,14 +120,14 @@ impl Table {
             axes,
         };
         let size = table.axes.each_ref().map(Vec::len);
-        let defined: Vec<bool> = places(size)
-            .map(|place| function.is_defined(table.at(place)))
+        let defined: Vec<bool> = indices(size)
+            .map(|index| function.is_defined(table.angles(index)))
             .collect();
-        // Further from where the function has values no cell reaches.
-        let needed = |place| near(size, place).any(|beside| defined[entry(size, beside)]);
+        // Cells that contain a point where the functions are defined have no other corners.
+        let needed = |index| adjacent(size, index).any(|other| defined[flat_index(size, other)]);
         let mut values = Vec::with_capacity(defined.len() * table.channels);
-        for place in places(size) {
-            let (at, needed) = (table.at(place), needed(place));
+        for index in indices(size) {
+            let (at, needed) = (table.angles(index), needed(index));
             let value = |channel| {
                 if needed {
                     function.value(channel, at)
@@ -132,42 +141,43 @@ impl Table {
         table
     }
 
-    /// The value of an entry, given by its places on the axes.
-    pub(super) fn value(&self, place: [usize; 3], channel: usize) -> f64 {
-        let entry = entry(self.axes.each_ref().map(Vec::len), place);
+    /// The value of an entry, given by its indices on the axes.
+    pub(super) fn value(&self, index: [usize; 3], channel: usize) -> f64 {
+        let entry = flat_index(self.axes.each_ref().map(Vec::len), index);
         self.values[entry * self.channels + channel]
     }
 
-    fn at(&self, place: [usize; 3]) -> At {
-        std::array::from_fn(|axis| self.axes[axis][place[axis]])
+    fn angles(&self, index: [usize; 3]) -> Angles {
+        std::array::from_fn(|axis| self.axes[axis][index[axis]])
     }
 
-    /// Interpolates in a cell, given by its first corner and the place in it, each from 0 to 1.
-    fn interpolated(&self, cell: [usize; 3], within: At, channel: usize) -> f64 {
+    /// Interpolates linearly in a cell, given by its first corner; `within` are the coordinates in
+    /// the cell, each from 0 to 1.
+    fn interpolated(&self, cell: [usize; 3], within: [f64; 3], channel: usize) -> f64 {
         let corner = |bits: usize| {
             let upper: [usize; 3] = std::array::from_fn(|axis| bits >> axis & 1);
             let weights = (0..3).map(|axis| match upper[axis] {
                 0 => 1.0 - within[axis],
                 _ => within[axis],
             });
-            let place = std::array::from_fn(|axis| cell[axis] + upper[axis]);
-            weights.product::<f64>() * self.value(place, channel)
+            let index = std::array::from_fn(|axis| cell[axis] + upper[axis]);
+            weights.product::<f64>() * self.value(index, channel)
         };
         (0..8).map(corner).sum()
     }
 
-    /// Finds the largest error between the entries; the places with more than the tolerance, the
-    /// worst first.
-    fn check(&mut self, function: &impl Tabulated, tolerance: f64) -> Vec<At> {
+    /// Finds the largest error between the entries. Returns the points at which it exceeds the
+    /// tolerance, the worst first.
+    fn check(&mut self, function: &impl Tabulated, tolerance: f64) -> Vec<Angles> {
         let mut random = StdRng::seed_from_u64(1);
         let cells = self.axes.each_ref().map(|axis| axis.len() - 1);
         let step = (cells.iter().product::<usize>() / CHECKED_CELLS).max(1);
         let mut failed = Vec::new();
-        for cell in places(cells).step_by(step) {
+        for cell in indices(cells).step_by(step) {
             let anywhere = std::array::from_fn(|_| random.random_range(0.0..1.0));
             for within in [[0.5; 3], anywhere] {
                 let at = self.between(cell, within);
-                if function.is_inside(at) {
+                if function.tolerance_applies(at) {
                     let error = self.error(function, cell, within, at);
                     self.checked += 1;
                     self.largest_error = self.largest_error.max(error);
@@ -178,17 +188,25 @@ impl Table {
             }
         }
         failed.sort_by(|a, b| b.0.total_cmp(&a.0));
-        failed.into_iter().take(WORST).map(|(_, at)| at).collect()
+        let worst = failed.into_iter().take(WORST_POINTS);
+        worst.map(|(_, at)| at).collect()
     }
 
-    fn between(&self, cell: [usize; 3], within: At) -> At {
+    fn between(&self, cell: [usize; 3], within: [f64; 3]) -> Angles {
         std::array::from_fn(|axis| {
             let (from, to) = (self.axes[axis][cell[axis]], self.axes[axis][cell[axis] + 1]);
             from + within[axis] * (to - from)
         })
     }
 
-    fn error(&self, function: &impl Tabulated, cell: [usize; 3], within: At, at: At) -> f64 {
+    /// The largest relative error of the channels at a point of a cell.
+    fn error(
+        &self,
+        function: &impl Tabulated,
+        cell: [usize; 3],
+        within: [f64; 3],
+        at: Angles,
+    ) -> f64 {
         let of = |channel| {
             let exact = function.value(channel, at);
             let error = (self.interpolated(cell, within, channel) - exact).abs();
@@ -202,49 +220,51 @@ impl Table {
     }
 }
 
-/// All places of a grid, the last axis fastest.
-fn places([first, second, third]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+/// All indices of a grid, the last axis fastest.
+fn indices([first, second, third]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
     (0..first).flat_map(move |i| (0..second).flat_map(move |j| (0..third).map(move |k| [i, j, k])))
 }
 
-/// The number of an entry in their order.
-fn entry([_, second, third]: [usize; 3], place: [usize; 3]) -> usize {
-    (place[0] * second + place[1]) * third + place[2]
+/// The position of an entry in the order of [`indices`].
+fn flat_index([_, second, third]: [usize; 3], index: [usize; 3]) -> usize {
+    (index[0] * second + index[1]) * third + index[2]
 }
 
-/// The entries beside one, and itself.
-fn near(size: [usize; 3], place: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
-    let from = place.map(|at| at.saturating_sub(1));
-    let counts = std::array::from_fn(|axis| (place[axis] + 2).min(size[axis]) - from[axis]);
-    places(counts).map(move |offset| std::array::from_fn(|axis| from[axis] + offset[axis]))
+/// An entry and those that share a cell with it.
+fn adjacent(size: [usize; 3], index: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let from = index.map(|i| i.saturating_sub(1));
+    let counts = std::array::from_fn(|axis| (index[axis] + 2).min(size[axis]) - from[axis]);
+    indices(counts).map(move |offset| std::array::from_fn(|axis| from[axis] + offset[axis]))
 }
 
-/// The axes for a share of the tolerance; `None` where there are too many entries.
-fn axes(function: &impl Tabulated, failed: &[At], share: f64) -> Option<[Vec<f64>; 3]> {
+/// The axes for a maximum relative error along each of them; `None` where there are too many
+/// entries.
+fn axes(function: &impl Tabulated, failed: &[Angles], max_error: f64) -> Option<[Vec<f64>; 3]> {
     let samples = function.samples();
     let mut entries = function.channels();
     let mut axes: [Vec<f64>; 3] = Default::default();
     for (axis, angles) in axes.iter_mut().enumerate() {
-        let refinement = Refinement::new(function, axis, &samples, failed, share);
-        *angles = refinement.angles(MOST_ENTRIES / entries)?;
+        let refinement = Refinement::new(function, axis, &samples, failed, max_error);
+        *angles = refinement.angles(MAX_ENTRIES / entries)?;
         entries *= angles.len();
     }
     Some(axes)
 }
 
-/// Rounded up.
-fn in_two_digits(number: f64) -> f64 {
+/// Rounds up to two significant digits.
+fn rounded_up(number: f64) -> f64 {
     let unit = 10_f64.powf(number.log10().floor() - 1.0);
     (number / unit).ceil() * unit
 }
 
-/// One axis that is refined.
+/// The refinement of one axis.
 struct Refinement<'a, F> {
     function: &'a F,
     axis: usize,
-    /// Places of the other two.
-    places: Vec<At>,
-    share: f64,
+    /// The points at which the error along the axis is computed; their angle on the axis is
+    /// ignored.
+    points: Vec<Angles>,
+    max_error: f64,
 }
 
 impl<'a, F: Tabulated> Refinement<'a, F> {
@@ -252,29 +272,29 @@ impl<'a, F: Tabulated> Refinement<'a, F> {
         function: &'a F,
         axis: usize,
         samples: &[Vec<f64>; 3],
-        failed: &[At],
-        share: f64,
+        failed: &[Angles],
+        max_error: f64,
     ) -> Self {
         let mut lists = samples.clone();
         lists[axis] = vec![0.0];
-        let product = places(lists.each_ref().map(Vec::len));
-        let at = |place: [usize; 3]| std::array::from_fn(|axis| lists[axis][place[axis]]);
-        let places = product.map(at).chain(failed.iter().copied()).collect();
+        let product = indices(lists.each_ref().map(Vec::len));
+        let at = |index: [usize; 3]| std::array::from_fn(|axis| lists[axis][index[axis]]);
+        let points = product.map(at).chain(failed.iter().copied()).collect();
         Self {
             function,
             axis,
-            places,
-            share,
+            points,
+            max_error,
         }
     }
 
-    /// The angles, as far from each other as the share allows; `None` where they are more than
+    /// The angles, as far apart as the maximum error allows; `None` where they are more than
     /// `most`.
     fn angles(&self, most: usize) -> Option<Vec<f64>> {
         let (from, to) = self.function.ranges()[self.axis];
         let smallest = (to - from) * 1e-6;
         let (mut angles, mut angle) = (vec![from], from);
-        let most = most.min(MOST_ANGLES);
+        let most = most.min(MAX_ANGLES);
         let mut step = (to - from) / 64.0;
         while angle < to {
             step = (2.0 * step).min(to - angle);
@@ -295,18 +315,18 @@ impl<'a, F: Tabulated> Refinement<'a, F> {
         Some(angles)
     }
 
-    /// Whether the functions may be taken for linear between two angles.
+    /// Whether linear interpolation between two angles is within the maximum error at all points.
     fn is_linear(&self, from: f64, to: f64) -> bool {
-        let narrow = self.function.narrow(self.axis, 0.5 * (from + to));
-        let mut places = self.places.iter().chain(&narrow);
-        places.all(|place| {
-            (0..self.function.channels()).all(|channel| self.is_linear_at(place, channel, from, to))
+        let lobe = self.function.lobe_points(self.axis, 0.5 * (from + to));
+        let mut points = self.points.iter().chain(&lobe);
+        points.all(|point| {
+            (0..self.function.channels()).all(|channel| self.is_linear_at(point, channel, from, to))
         })
     }
 
-    fn is_linear_at(&self, place: &At, channel: usize, from: f64, to: f64) -> bool {
+    fn is_linear_at(&self, point: &Angles, channel: usize, from: f64, to: f64) -> bool {
         let at = |angle: f64| {
-            let mut at = *place;
+            let mut at = *point;
             at[self.axis] = angle;
             at
         };
@@ -314,12 +334,12 @@ impl<'a, F: Tabulated> Refinement<'a, F> {
         let mut ends = None;
         [0.5, 0.25, 0.75].into_iter().all(|within| {
             let between = from + within * (to - from);
-            if !self.function.is_inside(at(between)) {
+            if !self.function.tolerance_applies(at(between)) {
                 return true;
             }
             let (first, last) = *ends.get_or_insert_with(|| (value(from), value(to)));
             let exact = value(between);
-            (first + within * (last - first) - exact).abs() <= self.share * exact.abs()
+            (first + within * (last - first) - exact).abs() <= self.max_error * exact.abs()
         })
     }
 }
@@ -328,7 +348,7 @@ impl<'a, F: Tabulated> Refinement<'a, F> {
 mod tests {
     use super::*;
 
-    /// A ridge along the diagonal of the first two.
+    /// A ridge along the diagonal of the first two axes.
     struct Ridge {
         width: f64,
     }
@@ -342,11 +362,11 @@ mod tests {
             [(0.0, 1.0), (0.0, 1.0), (0.0, 2.0)]
         }
 
-        fn value(&self, _: usize, [x, y, z]: At) -> f64 {
+        fn value(&self, _: usize, [x, y, z]: Angles) -> f64 {
             1.0 / (1.0 + ((x - y) / self.width).powi(2)) + 0.1 + z
         }
 
-        fn is_inside(&self, [x, ..]: At) -> bool {
+        fn tolerance_applies(&self, [x, ..]: Angles) -> bool {
             x <= 0.9
         }
 
@@ -354,7 +374,7 @@ mod tests {
             [vec![0.1, 0.5], vec![0.1, 0.5], vec![0.0, 1.0]]
         }
 
-        fn narrow(&self, _: usize, _: f64) -> Vec<At> {
+        fn lobe_points(&self, _: usize, _: f64) -> Vec<Angles> {
             Vec::new()
         }
 
@@ -362,19 +382,19 @@ mod tests {
             angle
         }
 
-        fn is_defined(&self, _: At) -> bool {
+        fn is_defined(&self, _: Angles) -> bool {
             true
         }
     }
 
     #[test]
-    fn a_table_keeps_to_its_tolerance_where_nobody_looked() {
+    fn a_table_is_within_its_tolerance_at_points_that_were_not_checked() {
         let ridge = Ridge { width: 0.1 };
         let table = Table::within(&ridge, 1e-2).ok().unwrap();
         assert!(table.largest_error <= 1e-2 && table.checked > 100);
         let mut random = StdRng::seed_from_u64(7);
         for _ in 0..100_000 {
-            let at: At =
+            let at: Angles =
                 std::array::from_fn(|axis| random.random_range(0.0..[0.9, 1.0, 2.0][axis]));
             let cell = std::array::from_fn(|axis| {
                 table.axes[axis]
@@ -396,7 +416,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_table_can_keep_to_says_what_one_can() {
+    fn a_tolerance_that_is_too_small_is_reported_with_one_that_is_not() {
         let ridge = Ridge { width: 1e-3 };
         let unreachable = Table::within(&ridge, 1e-6).err().unwrap();
         let reachable = unreachable.reachable;

@@ -1,25 +1,28 @@
-//! Zemax tabular BSDF: a table about the specular ray, read again by [`crate::read::zemax`], which
+//! Zemax tabular BSDF: a table about the specular ray; [`read::zemax`](crate::read::zemax)
 //! describes the format.
 //!
-//! Values between the entries are meant to be interpolated linearly in the incidence, the azimuth
-//! and the radial angle, as libbsdf does with such files; OpticStudio does not say how it does. The
-//! incidence goes up to 85 deg, the view everywhere, and the tolerance holds up to 85 deg of view.
-//! Below the surface the table goes on as far as the interpolation above it needs, with the value at
-//! the horizon; further down it is 0.
+//! Between the entries f_r is to be interpolated linearly in the incidence angle, the azimuth and
+//! the radial angle, as libbsdf does with such files; OpticStudio does not document its
+//! interpolation. The incidence angle ends at 85 deg; the views cover the hemisphere, and the
+//! tolerance applies up to 85 deg. Below the surface the table continues with the value at the
+//! horizon as far as the interpolation above it needs; further down it is 0.
 
 use std::io::{self, Write};
 
 use brdf_core::AnyBrdf;
 
-use super::domain::{LIMIT_DEG, from_narrow, spread, value};
-use super::interpolated::{At, Table, Tabulated};
+use super::comments;
+use super::domain::{MAX_ZENITH_DEG, continued_value, dense_near_zero, evenly_spaced};
+use super::error::ExportError;
+use super::interpolated::{Angles, Table, Tabulated};
 use super::material::Fitted;
-use super::target::ExportError;
 use crate::read::zemax::from_specular;
 
 /// Writes the fit as a plane-symmetrical BRDF.
 ///
-/// Errors: the tolerance cannot be kept to.
+/// # Errors
+///
+/// A table within the tolerance is too large; writing fails.
 pub(super) fn write(
     fitted: &Fitted,
     tolerance: f64,
@@ -56,7 +59,7 @@ fn write_header(
     table: &Table,
     writer: &mut dyn Write,
 ) -> io::Result<()> {
-    super::domain::write_comments(std::slice::from_ref(fitted), tolerance, table, writer)?;
+    comments::write(std::slice::from_ref(fitted), tolerance, table, writer)?;
     if let Some(wavelength_um) = fitted.wavelength_um {
         writeln!(writer, "# wavelength_um: {wavelength_um}")?;
     }
@@ -86,7 +89,7 @@ struct AboutSpecular {
 
 impl AboutSpecular {
     /// The view zenith angle in radians, which may be below the surface, and the azimuth.
-    fn view([psi_deg, azimuth_deg, radial_deg]: At) -> (f64, f64) {
+    fn view([psi_deg, azimuth_deg, radial_deg]: Angles) -> (f64, f64) {
         from_specular(
             psi_deg.to_radians(),
             azimuth_deg.to_radians(),
@@ -101,57 +104,57 @@ impl Tabulated for AboutSpecular {
     }
 
     fn ranges(&self) -> [(f64, f64); 3] {
-        [(0.0, LIMIT_DEG), (0.0, 180.0), (0.0, 2.0 * LIMIT_DEG)]
+        [
+            (0.0, MAX_ZENITH_DEG),
+            (0.0, 180.0),
+            (0.0, 2.0 * MAX_ZENITH_DEG),
+        ]
     }
 
-    fn value(&self, _: usize, at: At) -> f64 {
+    fn value(&self, _: usize, at: Angles) -> f64 {
         let (theta, phi) = Self::view(at);
-        value(&self.brdf, at[0].to_radians(), theta, phi)
+        continued_value(&self.brdf, [at[0].to_radians(), theta, phi])
     }
 
-    fn is_inside(&self, at: At) -> bool {
-        let limit = LIMIT_DEG.to_radians();
-        at[0] <= LIMIT_DEG && Self::view(at).0 <= limit
+    fn tolerance_applies(&self, at: Angles) -> bool {
+        let limit = MAX_ZENITH_DEG.to_radians();
+        at[0] <= MAX_ZENITH_DEG && Self::view(at).0 <= limit
     }
 
     fn samples(&self) -> [Vec<f64>; 3] {
         [
-            spread(0.0, LIMIT_DEG, 18),
-            spread(0.0, 180.0, 19),
-            from_narrow(2.0 * LIMIT_DEG),
+            evenly_spaced(0.0, MAX_ZENITH_DEG, 18),
+            evenly_spaced(0.0, 180.0, 19),
+            dense_near_zero(2.0 * MAX_ZENITH_DEG),
         ]
     }
 
-    fn narrow(&self, _: usize, _: f64) -> Vec<At> {
+    fn lobe_points(&self, _: usize, _: f64) -> Vec<Angles> {
         Vec::new()
     }
 
+    /// To 1e-4 deg: finer than the accuracy of any goniometer, and short to write.
     fn rounded(&self, angle: f64) -> f64 {
-        super::domain::rounded_deg(angle)
+        (angle * 1e4).round() / 1e4
     }
 
-    fn is_defined(&self, at: At) -> bool {
+    fn is_defined(&self, at: Angles) -> bool {
         Self::view(at).0 < std::f64::consts::FRAC_PI_2
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use brdf_core::{Parameters, ThreeParameterBrdf};
-
     use super::*;
     use crate::Measurements;
+    use crate::export::test_fits::of_paper;
     use crate::read::ReadOptions;
     use crate::scan::Format;
 
     fn fitted() -> Fitted {
-        let parameters = Parameters::new(0.225, 0.246, 0.9).unwrap();
         Fitted {
-            file: "paint.csv".to_owned(),
             wavelength_um: Some(0.62),
-            brdf: ThreeParameterBrdf::new(parameters, 1.62).unwrap().into(),
-            e_percent: 4.02,
-            psi_max_deg: 70.0,
+            ..of_paper([0.225, 0.246, 0.9, 1.62])
         }
     }
 
@@ -202,17 +205,17 @@ mod tests {
             .find_map(|line| line.strip_prefix("TIS\t"))
             .unwrap();
         let tis: f64 = tis.parse().unwrap();
-        // spec: 0.54 at normal incidence.
+        // Sample 002 of Table 1 at 0.62 um: 0.54 at normal incidence.
         assert!((tis - 0.54).abs() < 0.005, "{tis}");
     }
 
     #[test]
-    fn a_tolerance_that_cannot_be_kept_to_says_which_can() {
+    fn a_tolerance_that_is_too_small_is_reported_with_one_that_is_not() {
         let message = write(&fitted(), 1e-3, &mut Vec::new())
             .unwrap_err()
             .to_string();
         assert!(
-            message.contains("more than 4000000 entries: expected --tolerance"),
+            message.contains("more than 4000000 entries: expected a tolerance of at least "),
             "{message}"
         );
     }

@@ -1,34 +1,38 @@
-//! Mitsuba 3 (<https://mitsuba.readthedocs.io>): a BSDF plugin in Python, and a scene that shows the
-//! material on a sphere.
+//! Mitsuba 3 (<https://mitsuba.readthedocs.io>): a BSDF plugin in Python, and a scene that shows
+//! the material on a sphere as its companion file.
 //!
-//! In Mitsuba's terms: `eval` is f_r cos theta in 1/sr, wi the direction of the viewer and wo that of
-//! the source, which the reciprocal f_r may exchange; directions are in the frame of the surface, z
-//! its normal. The BRDFs of the colours are drawn from with equal probability, so that the density is
-//! the mean of theirs.
+//! In Mitsuba, `eval` is f_r cos theta in 1/sr, wi the direction to the viewer and wo that to the
+//! source (f_r is reciprocal, so they may be exchanged); directions are in the frame of the surface
+//! with z along its normal. The plugin samples the BRDFs of the colours with equal probability; its
+//! density is the mean of their densities.
 
 use std::io::{self, Write};
 
+use super::error::ExportError;
 use super::material::{Fitted, Material};
+use super::options::ExportOptions;
 use super::rgb::COLOURS;
-use super::source::python::drjit;
-use super::source::{Source, check_name};
-use super::target::{ExportError, ExportOptions};
+use super::source::{Source, check_name, dr_jit_functions};
 
 const HEAD: &str = include_str!("head.py");
 const PLUGIN: &str = include_str!("plugin.py");
 const SCENE: &str = include_str!("scene.xml");
 
 /// Writes the plugin.
+///
+/// # Errors
+///
+/// The name cannot be used in source code; there is no fit for a colour; writing fails.
 pub(super) fn write_plugin(
-    coating: &Material,
+    material: &Material,
     options: &ExportOptions,
     writer: &mut dyn Write,
 ) -> Result<(), ExportError> {
     check_name(&options.name)?;
-    let lobes = Lobes::of(coating.rgb(options.rgb)?);
+    let lobes = Lobes::of(material.rgb(options.rgb)?);
     write!(writer, "{}", HEAD.replace("@NAME@", &options.name))?;
     for (lobe, fit) in &lobes.distinct {
-        write!(writer, "\n{}\n", drjit(&Source::new(lobe, fit)?))?;
+        write!(writer, "\n{}\n", dr_jit_functions(&Source::new(lobe, fit)?))?;
     }
     lobes.write(writer)?;
     write!(writer, "\n\n{PLUGIN}")?;
@@ -36,15 +40,19 @@ pub(super) fn write_plugin(
 }
 
 /// Writes the scene.
+///
+/// # Errors
+///
+/// Writing fails.
 pub(super) fn write_scene(options: &ExportOptions, writer: &mut dyn Write) -> io::Result<()> {
     writer.write_all(SCENE.replace("@NAME@", &options.name).as_bytes())
 }
 
 /// The BRDFs of red, green and blue.
 struct Lobes<'a> {
-    /// Each once, with a name.
+    /// The distinct ones among them, with their names.
     distinct: Vec<(&'static str, &'a Fitted)>,
-    /// The names of those of red, green and blue.
+    /// For red, green and blue the name of its BRDF.
     channels: [&'static str; 3],
 }
 
@@ -67,15 +75,15 @@ impl<'a> Lobes<'a> {
         Self { distinct, channels }
     }
 
-    /// Writes what of the formulas the plugin calls.
+    /// Writes the objects through which the plugin calls the functions of the BRDFs.
     fn write(&self, writer: &mut dyn Write) -> io::Result<()> {
-        for (of, _) in &self.distinct {
-            writeln!(writer, "\n{} = Lobe(", of.to_uppercase())?;
-            writeln!(writer, "    value={of}_of_directions,")?;
-            writeln!(writer, "    lambertian={of}_KD / {of}_PI,")?;
-            writeln!(writer, "    specular_weight={of}_specular_weight,")?;
-            writeln!(writer, "    mirrored_density={of}_mirrored_density,")?;
-            writeln!(writer, "    draw={of}_draw,\n)")?;
+        for (name, _) in &self.distinct {
+            writeln!(writer, "\n{} = Lobe(", name.to_uppercase())?;
+            writeln!(writer, "    value={name}_of_directions,")?;
+            writeln!(writer, "    lambertian={name}_KD / {name}_PI,")?;
+            writeln!(writer, "    specular_weight={name}_specular_weight,")?;
+            writeln!(writer, "    mirrored_density={name}_mirrored_density,")?;
+            writeln!(writer, "    draw={name}_draw,\n)")?;
         }
         let lobes = self.distinct.iter().map(|(lobe, _)| lobe.to_uppercase());
         let lobes: Vec<_> = lobes.collect();
@@ -87,23 +95,18 @@ impl<'a> Lobes<'a> {
 
 #[cfg(test)]
 mod tests {
-    use brdf_core::{AnyBrdf, Family, ModelParameters, Parameters};
-
     use super::*;
+    use crate::export::test_fits::of_paper;
 
     fn fitted(file: &str, kd: f64) -> Fitted {
-        let at = ModelParameters::three(Parameters::new(0.3, kd, 0.2).unwrap(), 1.5);
         Fitted {
             file: file.to_owned(),
-            wavelength_um: None,
-            brdf: AnyBrdf::new(Family::Paper, &at).unwrap(),
-            e_percent: 1.0,
-            psi_max_deg: 70.0,
+            ..of_paper([0.3, kd, 0.2, 1.5])
         }
     }
 
     #[test]
-    fn each_fit_stands_once() {
+    fn each_distinct_fit_is_written_once() {
         let fits = [0.1, 0.2, 0.3].map(|kd| fitted("scan.csv", kd));
         let [a, b, c] = fits.each_ref();
         let lobes = |fits| {
@@ -120,7 +123,7 @@ mod tests {
     }
 
     fn plugin(name: &str, file: &str) -> Result<String, ExportError> {
-        let coating = Material {
+        let material = Material {
             fits: vec![fitted(file, 0.1)],
         };
         let options = ExportOptions {
@@ -128,7 +131,7 @@ mod tests {
             ..ExportOptions::default()
         };
         let mut bytes = Vec::new();
-        write_plugin(&coating, &options, &mut bytes)?;
+        write_plugin(&material, &options, &mut bytes)?;
         Ok(String::from_utf8(bytes).unwrap())
     }
 
@@ -144,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_that_is_none_is_refused() {
+    fn a_name_that_is_no_identifier_is_refused() {
         for name in ["", "two words", "\"", "<a>", "1st"] {
             assert!(
                 matches!(plugin(name, "scan.csv"), Err(ExportError::Name(_))),

@@ -1,24 +1,18 @@
-//! C99, as a header.
+//! C99: a header.
 
 use super::dialect::{Dialect, with_operators};
+use super::file::{Parts, Source};
 use super::formula::Function;
-use super::{Parts, Source, in_the_open};
+use super::name::name_in_c;
 
-/// A header.
+/// A header of inline functions.
 pub(super) fn header(source: &Source) -> String {
     let dialect = C { name: source.name };
-    source.file(&dialect, &PARTS)
+    source.text(&dialect, &PARTS)
 }
 
 const PARTS: Parts = Parts {
-    conventions: CONVENTIONS,
-    opening: OPENING,
-    constants: OWN_CONSTANTS,
-    specular_weight: SPECULAR_WEIGHT,
-    closing: CLOSING,
-};
-
-const CONVENTIONS: &str = "
+    conventions: "
 NAME_eval(psi, theta, phi)                    f_r in 1/sr, angles in radians; NaN outside the domain
 NAME_eval_directions(source, view)            f_r in 1/sr, unit vectors; 0 below the surface
 NAME_pdf(source, view)                        density of the views that are sampled, in 1/sr
@@ -26,9 +20,8 @@ NAME_sample(source, numbers, view, density)   view and its density from three nu
                                               returns f_r cos theta / density, 0 below the surface
 
 C99. Numbers are double, or float where BRDF_SINGLE is defined: f_r is right to 1e-5 then, for k1 from
-0.01 on and up to 85 deg.";
-
-const OPENING: &str = "
+0.01 on and up to 85 deg.",
+    opening: "
 #ifndef NAME_INCLUDED
 #define NAME_INCLUDED
 
@@ -48,9 +41,8 @@ typedef float NAME_real;
 typedef double NAME_real;
 #endif
 
-";
-
-const OWN_CONSTANTS: &str = "\
+",
+    constants: "\
 static const NAME_real NAME_OUTSIDE = NAN;
 #ifdef BRDF_SINGLE
 static const NAME_real NAME_BELOW_ONE = 0.99999994f;
@@ -60,9 +52,8 @@ static const NAME_real NAME_BELOW_ONE = 0.9999999999999999;
 static const NAME_real NAME_SPECULAR_WEIGHTS[17] = {
     VALUES
 };
-";
-
-const SPECULAR_WEIGHT: &str = "\
+",
+    specular_weight: "\
 static inline NAME_real NAME_specular_weight(NAME_real cos_psi) {
     const NAME_real position = 16.0f * BRDF_MATH(sqrt)(cos_psi);
     const int below = position > 0.0f ? (position < 15.0f ? (int)position : 15) : 0;
@@ -70,9 +61,8 @@ static inline NAME_real NAME_specular_weight(NAME_real cos_psi) {
     const NAME_real left = NAME_SPECULAR_WEIGHTS[below];
     return left + beyond * (NAME_SPECULAR_WEIGHTS[below + 1] - left);
 }
-";
-
-const CLOSING: &str = "
+",
+    closing: "
 static inline NAME_real NAME_sample(
     const NAME_real source[3], const NAME_real numbers[3], NAME_real view[3], NAME_real *density) {
     NAME_draw(source, numbers, view);
@@ -81,26 +71,25 @@ static inline NAME_real NAME_sample(
 }
 
 #endif
-";
+",
+};
 
-/// The language.
+/// The language, with the prefix of all names.
 struct C<'a> {
     name: &'a str,
 }
 
 impl Dialect for C<'_> {
-    const COMMENT: &'static str = "//";
-
-    fn named(&self, name: &str) -> String {
-        let name = match name {
-            "of_angles" => "eval",
-            "of_directions" => "eval_directions",
-            _ => in_the_open(name),
-        };
-        format!("{}_{name}", self.name)
+    fn prefix(&self) -> &str {
+        self.name
     }
 
-    /// A `float`: it is the same number as a `double`, and does not make one of an expression.
+    fn named(&self, name: &str) -> String {
+        format!("{}_{}", self.name, name_in_c(name))
+    }
+
+    /// A literal of the type `float`: it is the same number as a `double`, and does not turn the
+    /// expression around it into one.
     fn number(&self, digits: &str) -> String {
         format!("{digits}f")
     }
@@ -117,8 +106,8 @@ impl Dialect for C<'_> {
     }
 
     fn constant(&self, name: &str, value: f64) -> String {
-        let (word, name) = (self.name, self.named(name));
-        format!("static const {word}_real {name} = {value:?};\n")
+        let (prefix, name) = (self.name, self.named(name));
+        format!("static const {prefix}_real {name} = {value:?};\n")
     }
 
     fn head(&self, function: &Function) -> String {

@@ -1,23 +1,29 @@
-//! Languages: how each prints the functions of the formulas.
+//! How a language prints the functions of the formulas.
 
 use std::fmt::Write as _;
 
 use super::expression::Term;
 use super::formula::{Function, Statement};
+use super::name::name_in_shaders;
 
-/// A language.
+/// A language. The defaults are those of most shading languages.
 pub(super) trait Dialect {
-    /// What begins a comment up to the end of the line.
-    const COMMENT: &'static str;
-    /// What ends a statement.
+    /// The beginning of a comment that extends to the end of the line.
+    const COMMENT: &'static str = "//";
+    /// The end of a statement.
     const END: &'static str = ";";
     /// The empty lines before a function.
     const BEFORE_FUNCTION: &'static str = "\n";
 
-    /// The name of a function or a constant, with the first word that all names have.
-    fn named(&self, name: &str) -> String;
+    /// The prefix of all names.
+    fn prefix(&self) -> &str;
 
-    /// A number that `f32` has too, given with a point.
+    /// The name of a function or a constant, with the prefix.
+    fn named(&self, name: &str) -> String {
+        format!("{}_{}", self.prefix(), name_in_shaders(name))
+    }
+
+    /// A number, given with a decimal point, that is exact in single precision.
     fn number(&self, digits: &str) -> String {
         digits.to_owned()
     }
@@ -27,36 +33,44 @@ pub(super) trait Dialect {
         format!("{vector}[{axis}]")
     }
 
-    /// A call of a function that the language has; nothing if it is one of the formulas.
-    fn library_call(&self, function: &str, arguments: &[String]) -> Option<String>;
+    /// A call of a function of the library; `None` for a function of the formulas.
+    fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {
+        same_call(function, arguments).or_else(|| with_operators(function, arguments))
+    }
 
     /// The definition of a constant.
     fn constant(&self, name: &str, value: f64) -> String;
 
-    /// The first line of a function.
+    /// The first line of the definition of a function.
     fn head(&self, function: &Function) -> String;
 
-    /// What is said of a parameter that a function makes no use of.
+    /// The statement that marks a parameter as unused, where the language needs one.
     fn unused(&self, _parameter: &str) -> String {
         String::new()
     }
 
-    /// What ends a function.
+    /// The end of the definition of a function.
     fn tail(&self) -> &'static str {
         "}\n"
     }
 
-    /// The words before the name of a local number.
+    /// The code before the name in the definition of a local number.
     fn local(&self) -> String;
 
-    /// The words before the name of a local truth.
+    /// The code before the name in the definition of a local truth value.
     fn condition(&self) -> &'static str;
 
-    /// The lines that return a vector.
+    /// The lines that return a vector of the given components.
     fn return_vector(&self, components: &[String]) -> Vec<String>;
 }
 
-/// The first line of a function in a language that has kinds before names, the result's too.
+/// A component of a vector by its name: x, y or z.
+pub(super) fn named_component(vector: &str, axis: usize) -> String {
+    format!("{vector}.{}", ["x", "y", "z"][axis])
+}
+
+/// The first line of a definition in a language with types before the names of parameters and
+/// function.
 pub(super) fn typed_head(name: &str, function: &Function, real: &str, vector: &str) -> String {
     let kind = |is_vector| if is_vector { vector } else { real };
     let parameters = function.parameters.iter();
@@ -65,7 +79,7 @@ pub(super) fn typed_head(name: &str, function: &Function, real: &str, vector: &s
     format!("{} {name}({parameters}) {{", kind(function.returns_vector))
 }
 
-/// `select` and `both` by the operators of C.
+/// `select` and `both` with the operators of C.
 pub(super) fn with_operators(function: &str, arguments: &[String]) -> Option<String> {
     match (function, arguments) {
         ("select", [condition, then, otherwise]) => {
@@ -76,19 +90,19 @@ pub(super) fn with_operators(function: &str, arguments: &[String]) -> Option<Str
     }
 }
 
-/// A call of a function that has the same name in the formulas and in the languages of shaders.
+/// A call of a function that has the same name in the formulas and in shading languages.
 pub(super) fn same_call(function: &str, arguments: &[String]) -> Option<String> {
     let same = ["sqrt", "exp", "log", "sin", "cos", "abs", "min", "max"];
     let call = || format!("{function}({})", arguments.join(", "));
     same.contains(&function).then(call)
 }
 
-/// The functions.
+/// The definitions of functions.
 pub(super) fn print<D: Dialect>(dialect: &D, functions: &[Function]) -> String {
     functions.iter().map(|one| function(dialect, one)).collect()
 }
 
-/// Comment lines.
+/// Lines as comments.
 pub(super) fn comment<D: Dialect>(lines: &str) -> String {
     let line = |line: &str| format!("{} {line}", D::COMMENT).trim_end().to_owned() + "\n";
     lines.lines().map(line).collect()
@@ -146,8 +160,8 @@ fn term<D: Dialect>(dialect: &D, term: &Term) -> String {
         Term::Group(inside) => format!("({})", expression(dialect, inside)),
         Term::Call(name, arguments) => {
             let arguments: Vec<_> = arguments.iter().map(|a| expression(dialect, a)).collect();
-            let of_library = dialect.library_call(name, &arguments);
-            of_library
+            dialect
+                .library_call(name, &arguments)
                 .unwrap_or_else(|| format!("{}({})", dialect.named(name), arguments.join(", ")))
         }
     }

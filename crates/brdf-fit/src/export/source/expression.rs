@@ -1,4 +1,5 @@
-//! Expressions of the formulas: operators as all the languages have them, numbers, names and calls.
+//! Expressions of the formulas: operators, numbers, names and calls. The documentation of the
+//! parent module describes them.
 
 use std::iter::Peekable;
 use std::str::Chars;
@@ -9,23 +10,23 @@ pub(super) type Expression = Vec<Term>;
 /// A part of an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Term {
-    /// Operators, and the spaces about them.
+    /// Operators and the spaces around them.
     Operator(String),
-    /// A number with a point.
+    /// A number with a decimal point.
     Number(String),
     /// A parameter or a local quantity.
     Local(String),
     /// A constant, in capitals.
     Constant(String),
-    /// A component of a vector, from 0.
+    /// A component of a vector: its name and the index of the component, from 0.
     Component(String, usize),
-    /// A call.
+    /// A call of a function with its arguments.
     Call(String, Vec<Expression>),
-    /// Something in parentheses.
+    /// An expression in parentheses.
     Group(Expression),
 }
 
-/// An expression from its text, which is ours.
+/// Parses an expression, whose text is part of the program.
 pub(super) fn parse(text: &str) -> Expression {
     let mut characters = text.chars().peekable();
     let mut parts = arguments(&mut characters);
@@ -33,7 +34,7 @@ pub(super) fn parse(text: &str) -> Expression {
     parts.swap_remove(0)
 }
 
-/// The expressions up to a closing parenthesis, or the end: at least one.
+/// Parses expressions separated by commas up to a closing parenthesis or the end: at least one.
 fn arguments(characters: &mut Peekable<Chars>) -> Vec<Expression> {
     let mut all = vec![Vec::new()];
     let mut last = Vec::new();
@@ -47,8 +48,8 @@ fn arguments(characters: &mut Peekable<Chars>) -> Vec<Expression> {
             }
             _ => last.push(term(characters)),
         }
-        if let Some(of_last) = all.last_mut() {
-            of_last.append(&mut last);
+        if let Some(expression) = all.last_mut() {
+            expression.append(&mut last);
         }
     }
     all
@@ -104,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn terms_are_told_apart() {
+    fn each_kind_of_term_is_recognised() {
         let local = |name: &str| Term::Local(name.to_owned());
         let operator = |text: &str| Term::Operator(text.to_owned());
         assert_eq!(

@@ -1,16 +1,5 @@
-//! The formulas of a family: functions in a small language of statements, which each
-//! [dialect](super::dialect) prints in its own words. They are written once, in `formula/*.txt`:
-//!
-//! ```text
-//! # comment, above a function and between its lines
-//! fn name(real, vector: vec3) -> vec3      what is not said to be a vector is a real number
-//!     let local = expression
-//!     condition local = expression         true or false, for select(condition, then, otherwise)
-//!     return expression                    vec3(x, y, z) where a vector is returned
-//! ```
-//!
-//! A blank line ends a function. Constants are in capitals. Besides the functions of the formulas
-//! there are sqrt, exp, log, sin, cos, abs, min, max, select and both (and).
+//! The formulas of a family as functions, parsed from `formula/*.txt`; the documentation of the
+//! parent module describes their language.
 
 use brdf_core::Family;
 
@@ -19,15 +8,15 @@ use super::expression::{Expression, parse};
 /// A function.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Function {
-    /// What it is: lines.
+    /// The lines of the comment above it.
     pub(super) comment: Vec<&'static str>,
-    /// Its name, without the first word that all names have.
+    /// Its name, without the prefix of all names.
     pub(super) name: &'static str,
     /// Its parameters.
     pub(super) parameters: Vec<Parameter>,
     /// Whether it returns a vector.
     pub(super) returns_vector: bool,
-    /// What it does.
+    /// Its statements.
     pub(super) body: Vec<Statement>,
 }
 
@@ -43,18 +32,17 @@ pub(super) struct Parameter {
 /// A line of a function.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Statement {
-    /// Words.
+    /// A comment.
     Comment(&'static str),
-    /// A local number.
+    /// The definition of a local real number.
     Let(&'static str, Expression),
-    /// A local truth.
+    /// The definition of a local truth value.
     Condition(&'static str, Expression),
-    /// The result.
+    /// The result of the function.
     Return(Expression),
 }
 
-/// What evaluates a BRDF of a family, in an order in which each function is known where it is
-/// called.
+/// The functions that evaluate a BRDF of a family, each after those that it calls.
 pub(super) fn evaluation(family: Family) -> Vec<Function> {
     let facet = match family {
         Family::Paper | Family::Smith => include_str!("formula/ellipsoid.txt"),
@@ -75,8 +63,8 @@ pub(super) fn evaluation(family: Family) -> Vec<Function> {
     texts.into_iter().flat_map(functions).collect()
 }
 
-/// What draws directions, after what [evaluates](evaluation). It calls specular_weight(cos psi),
-/// which each dialect writes for itself, since it is a table.
+/// The functions that sample directions, each after those that it calls, which include the
+/// functions of [`evaluation`] and specular_weight(cos_psi), which each language defines itself.
 pub(super) fn sampling() -> Vec<Function> {
     functions(include_str!("formula/sampling.txt")).collect()
 }
@@ -85,13 +73,15 @@ fn functions(text: &'static str) -> impl Iterator<Item = Function> {
     text.split("\n\n").map(function)
 }
 
-/// A function of a text of this program. What is wrong with one is no user's fault, and stops every
-/// test of its family.
+/// Parses a function. The texts are part of the program: a mistake in one is not an error of the
+/// user, and the panic stops every test of its family.
 fn function(text: &'static str) -> Function {
     let (comment, code): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with('#'));
     let head = code.first().copied().unwrap_or_default();
-    let (name, rest) = head["fn ".len()..].split_once('(').expect("parameters");
-    let (parameters, result) = rest.split_once(')').expect("an end of the parameters");
+    let (name, rest) = head["fn ".len()..]
+        .split_once('(')
+        .expect("a formula has parameters");
+    let (parameters, result) = rest.split_once(')').expect("the parameters end");
     Function {
         comment: comment.into_iter().map(without_mark).collect(),
         name,
@@ -112,12 +102,12 @@ fn parameter(text: &'static str) -> Parameter {
     }
 }
 
-/// A line of a function, of which the same is true.
+/// Parses a line of a function; as in [`function`], the text is part of the program.
 fn statement(line: &'static str) -> Statement {
     if line.starts_with('#') {
         return Statement::Comment(without_mark(line));
     }
-    let (keyword, rest) = line.split_once(' ').expect("a statement");
+    let (keyword, rest) = line.split_once(' ').expect("a line is a statement");
     match (keyword, rest.split_once(" = ")) {
         ("let", Some((name, value))) => Statement::Let(name, parse(value)),
         ("condition", Some((name, value))) => Statement::Condition(name, parse(value)),
@@ -145,8 +135,11 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::cast_possible_truncation, reason = "that is the question")]
-    fn single_precision_has_every_number() {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the conversion is what is tested"
+    )]
+    fn every_number_is_exact_in_single_precision() {
         for function in Family::ALL
             .into_iter()
             .flat_map(evaluation)
@@ -171,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_are_what_their_text_says() {
+    fn functions_are_parsed_from_their_text() {
         let all = sampling();
         let named = |name| all.iter().find(|function| function.name == name).unwrap();
         let (density, draw) = (named("density"), named("draw"));

@@ -1,24 +1,17 @@
-//! GLSL, as a piece of any shader.
+//! GLSL: functions for any shader.
 
-use super::dialect::{Dialect, same_call, typed_head, with_operators};
+use super::dialect::{Dialect, named_component, typed_head};
+use super::file::{Parts, Source};
 use super::formula::Function;
-use super::{AXES, Parts, Source, of_shaders};
 
-/// Constants and functions, to be pasted into a shader.
+/// Constants and functions, to be inserted into a shader.
 pub(super) fn snippet(source: &Source) -> String {
     let dialect = Glsl { name: source.name };
-    source.file(&dialect, &PARTS)
+    source.text(&dialect, &PARTS)
 }
 
 const PARTS: Parts = Parts {
-    conventions: CONVENTIONS,
-    opening: "\n",
-    constants: OWN_CONSTANTS,
-    specular_weight: SPECULAR_WEIGHT,
-    closing: CLOSING,
-};
-
-const CONVENTIONS: &str = "
+    conventions: "
 NAME_eval(source, view)                       f_r in 1/sr, unit vectors; 0 below the surface
 NAME_eval_angles(psi, theta, phi)             f_r in 1/sr, angles in radians; 0 outside the domain
 NAME_pdf(source, view)                        density of the views that are sampled, in 1/sr
@@ -26,51 +19,44 @@ NAME_sample(source, numbers, view, density)   view and its density from three nu
                                               returns f_r cos theta / density, 0 below the surface
 
 GLSL, of version 1.30, 3.00 es or later. Next to grazing angles directions are more accurate than
-angles, whose cosine a graphics processor may not have to all digits.";
-
-const OWN_CONSTANTS: &str = "\
+angles, whose cosine a graphics processor may not have to all digits.",
+    opening: "\n",
+    constants: "\
 const float NAME_OUTSIDE = 0.0;
 const float NAME_BELOW_ONE = 0.99999994;
 const float NAME_SPECULAR_WEIGHTS[17] = float[17](
     VALUES
 );
-";
-
-const SPECULAR_WEIGHT: &str = "\
+",
+    specular_weight: "\
 float NAME_specular_weight(float cos_psi) {
     float position = 16.0 * sqrt(max(cos_psi, 0.0));
     int below = int(min(position, 15.0));
     float left = NAME_SPECULAR_WEIGHTS[below];
     return left + (position - float(below)) * (NAME_SPECULAR_WEIGHTS[below + 1] - left);
 }
-";
-
-const CLOSING: &str = "
+",
+    closing: "
 float NAME_sample(vec3 source, vec3 numbers, out vec3 view, out float density) {
     view = NAME_draw(source, numbers);
     density = NAME_pdf(source, view);
     return NAME_weight(source, view);
 }
-";
+",
+};
 
-/// The language.
+/// The language, with the prefix of all names.
 struct Glsl<'a> {
     name: &'a str,
 }
 
 impl Dialect for Glsl<'_> {
-    const COMMENT: &'static str = "//";
-
-    fn named(&self, name: &str) -> String {
-        format!("{}_{}", self.name, of_shaders(name))
+    fn prefix(&self) -> &str {
+        self.name
     }
 
     fn component(&self, vector: &str, axis: usize) -> String {
-        format!("{vector}.{}", AXES[axis])
-    }
-
-    fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {
-        same_call(function, arguments).or_else(|| with_operators(function, arguments))
+        named_component(vector, axis)
     }
 
     fn constant(&self, name: &str, value: f64) -> String {

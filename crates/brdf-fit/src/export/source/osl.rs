@@ -1,24 +1,17 @@
-//! Open Shading Language.
+//! The Open Shading Language: functions for any shader, and a shader.
 
-use super::dialect::{Dialect, same_call, typed_head, with_operators};
+use super::dialect::{Dialect, typed_head};
+use super::file::{Parts, Source};
 use super::formula::Function;
-use super::{Parts, Source, of_shaders};
 
-/// Functions for any shader, and a shader that gives their value.
+/// Functions for any shader, and a shader that evaluates f_r.
 pub(super) fn shader(source: &Source) -> String {
     let dialect = Osl { name: source.name };
-    source.file(&dialect, &PARTS)
+    source.text(&dialect, &PARTS)
 }
 
 const PARTS: Parts = Parts {
-    conventions: CONVENTIONS,
-    opening: "\n",
-    constants: OWN_CONSTANTS,
-    specular_weight: SPECULAR_WEIGHT,
-    closing: CLOSING,
-};
-
-const CONVENTIONS: &str = "
+    conventions: "
 NAME_eval(source, view)                       f_r in 1/sr, unit vectors; 0 below the surface
 NAME_eval_angles(psi, theta, phi)             f_r in 1/sr, angles in radians; 0 outside the domain
 NAME_pdf(source, view)                        density of the views that are sampled, in 1/sr
@@ -28,14 +21,13 @@ NAME_sample(source, numbers, view, density)   view and its density from three nu
 Shaders of this language put materials together of closures that the renderer has; they cannot
 define one. These functions serve shaders that compute light themselves, patterns and the baking of
 tables; the shader NAME_value gives f_r of two directions about a normal. A file has room for one
-shader: another includes this one with NAME_NO_SHADER defined.";
-
-const OWN_CONSTANTS: &str = "\
+shader: another includes this one with NAME_NO_SHADER defined.",
+    opening: "\n",
+    constants: "\
 #define NAME_OUTSIDE 0.0
 #define NAME_BELOW_ONE 0.99999994
-";
-
-const SPECULAR_WEIGHT: &str = "\
+",
+    specular_weight: "\
 float NAME_specular_weight(float cos_psi) {
     float weights[17] = {
         VALUES
@@ -45,9 +37,8 @@ float NAME_specular_weight(float cos_psi) {
     float left = weights[below];
     return left + (position - below) * (weights[below + 1] - left);
 }
-";
-
-const CLOSING: &str = "
+",
+    closing: "
 float NAME_sample(vector source, vector numbers, output vector view, output float density) {
     view = NAME_draw(source, numbers);
     density = NAME_pdf(source, view);
@@ -72,22 +63,17 @@ shader NAME_value(
     Value = NAME_eval(NAME_about(Source, n), NAME_about(View, n));
 }
 #endif
-";
+",
+};
 
-/// The language.
+/// The language, with the prefix of all names.
 struct Osl<'a> {
     name: &'a str,
 }
 
 impl Dialect for Osl<'_> {
-    const COMMENT: &'static str = "//";
-
-    fn named(&self, name: &str) -> String {
-        format!("{}_{}", self.name, of_shaders(name))
-    }
-
-    fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {
-        same_call(function, arguments).or_else(|| with_operators(function, arguments))
+    fn prefix(&self) -> &str {
+        self.name
     }
 
     /// The language has no constants outside of functions.

@@ -1,10 +1,10 @@
-//! Python, over arrays of NumPy or of Dr.Jit.
+//! Python: functions of arrays of NumPy or of Dr.Jit.
 
 use super::dialect::Dialect;
+use super::file::{Parts, Source};
 use super::formula::Function;
-use super::{Parts, Source};
 
-/// The module whose functions are called.
+/// The library whose functions are called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Module {
     /// NumPy, `import numpy as np`.
@@ -13,84 +13,48 @@ enum Module {
     DrJit,
 }
 
-/// A file of functions over arrays of NumPy.
-pub(super) fn numpy(source: &Source) -> String {
-    Python::of(source, Module::NumPy, &NUMPY)
+/// A module of functions of NumPy arrays.
+pub(super) fn numpy_module(source: &Source) -> String {
+    Python::text(source, Module::NumPy, &NUMPY)
 }
 
-/// Functions over numbers and arrays of Dr.Jit, below the words about them, their names beginning
-/// with that of the source, so that several fit into one file. For the user there are, directions
-/// being sequences of their three components (z along the surface normal) and angles in radians:
+/// Functions of numbers and Dr.Jit arrays, below a comment that describes the BRDF. Their names
+/// have the prefix of the source, so that a file may contain several. Directions are sequences of
+/// three components with z along the surface normal, angles are in radians:
 ///
 /// ```text
 /// NAME_of_angles(psi, theta, phi)     f_r in 1/sr
 /// NAME_of_directions(source, view)    f_r in 1/sr, 0 below the surface
-/// NAME_density(source, view)          the density of the views that are drawn, in 1/sr
-/// NAME_mirrored_density(source, view) that of the views that facets mirror
-/// NAME_draw(source, numbers)          a view from three random numbers
+/// NAME_density(source, view)          density of the sampled views in 1/sr
+/// NAME_mirrored_density(source, view) density of the views sampled from the specular lobe in 1/sr
+/// NAME_draw(source, numbers)          a view from three random numbers in [0, 1)
 /// NAME_weight(source, view)           f_r cos theta / density
 /// ```
-pub(in crate::export) fn drjit(source: &Source) -> String {
-    Python::of(source, Module::DrJit, &DR_JIT)
+pub(in crate::export) fn dr_jit_functions(source: &Source) -> String {
+    Python::text(source, Module::DrJit, &DR_JIT)
 }
 
 const NUMPY: Parts = Parts {
-    conventions: NUMPY_CONVENTIONS,
-    opening: "\nimport numpy as np\n\n",
-    constants: NUMPY_CONSTANTS,
-    specular_weight: NUMPY_SPECULAR_WEIGHT,
-    closing: NUMPY_WRAPPERS,
-};
-
-/// Of a file of this the head and the end are written elsewhere.
-const DR_JIT: Parts = Parts {
-    conventions: "",
-    opening: "\n",
-    constants: DR_JIT_CONSTANTS,
-    specular_weight: DR_JIT_SPECULAR_WEIGHT,
-    closing: "",
-};
-
-const NUMPY_CONVENTIONS: &str = "
+    conventions: "
 NAME_eval(psi, theta, phi)           f_r in 1/sr, angles in radians; NaN outside the domain
 NAME_eval_directions(source, view)   f_r in 1/sr, unit vectors; 0 below the surface
 NAME_pdf(source, view)               density of the views that are sampled, in 1/sr
 NAME_sample(source, numbers)         view, pdf, f_r cos theta / pdf, from three numbers of [0, 1)
 
-All take numbers or arrays, which are broadcast; vectors are along the last axis.";
-
-const NUMPY_CONSTANTS: &str = "\
+All take numbers or arrays, which are broadcast; vectors are along the last axis.",
+    opening: "\nimport numpy as np\n\n",
+    constants: "\
 NAME_OUTSIDE = np.nan
 NAME_BELOW_ONE = 0.9999999999999999
 NAME_SPECULAR_WEIGHTS = [
     VALUES
 ]
-";
-
-const NUMPY_SPECULAR_WEIGHT: &str = "\
+",
+    specular_weight: "\
 def NAME_specular_weight(cos_psi):
     return np.interp(16.0 * np.sqrt(cos_psi), np.arange(17.0), NAME_SPECULAR_WEIGHTS)
-";
-
-const DR_JIT_CONSTANTS: &str = "\
-NAME_OUTSIDE = dr.nan
-NAME_BELOW_ONE = 0.99999994
-NAME_SPECULAR_WEIGHTS = [
-    VALUES
-]
-";
-
-/// As the sum of hat functions: without an index it serves numbers and arrays.
-const DR_JIT_SPECULAR_WEIGHT: &str = "\
-def NAME_specular_weight(cos_psi):
-    position = 16.0 * dr.sqrt(cos_psi)
-    weight = 0.0
-    for entry, value in enumerate(NAME_SPECULAR_WEIGHTS):
-        weight += value * dr.maximum(0.0, 1.0 - dr.abs(position - entry))
-    return weight
-";
-
-const NUMPY_WRAPPERS: &str = r#"
+",
+    closing: r#"
 
 def NAME_components(vectors):
     return np.moveaxis(np.asarray(vectors, dtype=float), -1, 0)
@@ -123,19 +87,42 @@ def NAME_sample(source, numbers):
         view = NAME_draw(source, NAME_components(numbers))
         pdf, weight = NAME_density(source, view), NAME_weight(source, view)
     return np.stack(np.broadcast_arrays(*view), axis=-1), pdf, weight
-"#;
+"#,
+};
 
-/// The language with one of its modules.
+/// The head and the end of the file are written by the caller. `specular_weight` is a sum of hat
+/// functions: without an index it applies to numbers and to arrays.
+const DR_JIT: Parts = Parts {
+    conventions: "",
+    opening: "\n",
+    constants: "\
+NAME_OUTSIDE = dr.nan
+NAME_BELOW_ONE = 0.99999994
+NAME_SPECULAR_WEIGHTS = [
+    VALUES
+]
+",
+    specular_weight: "\
+def NAME_specular_weight(cos_psi):
+    position = 16.0 * dr.sqrt(cos_psi)
+    weight = 0.0
+    for entry, value in enumerate(NAME_SPECULAR_WEIGHTS):
+        weight += value * dr.maximum(0.0, 1.0 - dr.abs(position - entry))
+    return weight
+",
+    closing: "",
+};
+
+/// The language with one of the libraries.
 struct Python<'a> {
     name: &'a str,
     module: Module,
 }
 
 impl Python<'_> {
-    /// A file.
-    fn of(source: &Source, module: Module, parts: &Parts) -> String {
+    fn text(source: &Source, module: Module, parts: &Parts) -> String {
         let name = source.name;
-        source.file(&Python { name, module }, parts)
+        source.text(&Python { name, module }, parts)
     }
 
     fn module(&self) -> &'static str {
@@ -151,6 +138,11 @@ impl Dialect for Python<'_> {
     const END: &'static str = "";
     const BEFORE_FUNCTION: &'static str = "\n\n";
 
+    fn prefix(&self) -> &str {
+        self.name
+    }
+
+    /// The functions for the user of NumPy are written in the closing part.
     fn named(&self, name: &str) -> String {
         format!("{}_{name}", self.name)
     }
@@ -171,7 +163,7 @@ impl Dialect for Python<'_> {
     fn constant(&self, name: &str, value: f64) -> String {
         let name = self.named(name);
         match self.module {
-            // A number of NumPy, which may be divided by 0.
+            // A NumPy number may be divided by 0, a Python number may not.
             Module::NumPy => format!("{name} = np.float64({value:?})\n"),
             Module::DrJit => format!("{name} = {value:?}\n"),
         }
@@ -205,27 +197,21 @@ impl Dialect for Python<'_> {
 
 #[cfg(test)]
 mod tests {
-    use brdf_core::{AnyBrdf, Family, ModelParameters, Parameters};
+    use brdf_core::{Family, ModelParameters, Parameters};
 
     use super::*;
-    use crate::export::Fitted;
+    use crate::export::test_fits::fitted;
 
     #[test]
-    fn each_module_calls_its_own_functions() {
+    fn functions_of_the_chosen_library_are_called() {
         for family in Family::ALL {
             let three = Parameters::new(0.3, 0.1, 0.2).unwrap();
             let at = ModelParameters::three(three, 1.5);
-            let fitted = Fitted {
-                file: "scan.csv".to_owned(),
-                wavelength_um: None,
-                brdf: AnyBrdf::new(family, &at).unwrap(),
-                e_percent: 1.0,
-                psi_max_deg: 70.0,
-            };
+            let fitted = fitted(family, at);
             let source = Source::new("red", &fitted).unwrap();
-            let (numpy, drjit) = (numpy(&source), drjit(&source));
+            let (numpy, dr_jit) = (numpy_module(&source), dr_jit_functions(&source));
             assert!(numpy.contains("np.where(") && !numpy.contains("dr."));
-            assert!(drjit.contains("dr.select(") && !drjit.contains("np."));
+            assert!(dr_jit.contains("dr.select(") && !dr_jit.contains("np."));
         }
     }
 }

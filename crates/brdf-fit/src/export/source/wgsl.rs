@@ -1,24 +1,17 @@
-//! WGSL, as a piece of any shader.
+//! WGSL: functions for any shader.
 
-use super::dialect::{Dialect, same_call, with_operators};
+use super::dialect::{Dialect, named_component, same_call, with_operators};
+use super::file::{Parts, Source};
 use super::formula::Function;
-use super::{AXES, Parts, Source, of_shaders};
 
-/// Constants and functions, to be pasted into a shader.
+/// Constants and functions, to be inserted into a shader.
 pub(super) fn snippet(source: &Source) -> String {
     let dialect = Wgsl { name: source.name };
-    source.file(&dialect, &PARTS)
+    source.text(&dialect, &PARTS)
 }
 
 const PARTS: Parts = Parts {
-    conventions: CONVENTIONS,
-    opening: "\n",
-    constants: OWN_CONSTANTS,
-    specular_weight: SPECULAR_WEIGHT,
-    closing: CLOSING,
-};
-
-const CONVENTIONS: &str = "
+    conventions: "
 NAME_eval(source, view)             f_r in 1/sr, unit vectors; 0 below the surface
 NAME_eval_angles(psi, theta, phi)   f_r in 1/sr, angles in radians; 0 outside the domain
 NAME_pdf(source, view)              density of the views that are sampled, in 1/sr
@@ -26,26 +19,24 @@ NAME_sample(source, numbers)        view, its density and f_r cos theta / densit
                                     the surface, from three numbers of [0, 1)
 
 Next to grazing angles directions are more accurate than angles, whose cosine a graphics processor
-may not have to all digits.";
-
-const OWN_CONSTANTS: &str = "\
+may not have to all digits.",
+    opening: "\n",
+    constants: "\
 const NAME_OUTSIDE: f32 = 0.0;
 const NAME_BELOW_ONE: f32 = 0.99999994;
 const NAME_SPECULAR_WEIGHTS = array<f32, 17>(
     VALUES
 );
-";
-
-const SPECULAR_WEIGHT: &str = "\
+",
+    specular_weight: "\
 fn NAME_specular_weight(cos_psi: f32) -> f32 {
     let position = 16.0 * sqrt(max(cos_psi, 0.0));
     let below = i32(min(position, 15.0));
     let left = NAME_SPECULAR_WEIGHTS[below];
     return left + (position - f32(below)) * (NAME_SPECULAR_WEIGHTS[below + 1] - left);
 }
-";
-
-const CLOSING: &str = "
+",
+    closing: "
 struct NAME_Sample {
     view: vec3<f32>,
     density: f32,
@@ -56,22 +47,21 @@ fn NAME_sample(source: vec3<f32>, numbers: vec3<f32>) -> NAME_Sample {
     let view = NAME_draw(source, numbers);
     return NAME_Sample(view, NAME_pdf(source, view), NAME_weight(source, view));
 }
-";
+",
+};
 
-/// The language.
+/// The language, with the prefix of all names.
 struct Wgsl<'a> {
     name: &'a str,
 }
 
 impl Dialect for Wgsl<'_> {
-    const COMMENT: &'static str = "//";
-
-    fn named(&self, name: &str) -> String {
-        format!("{}_{}", self.name, of_shaders(name))
+    fn prefix(&self) -> &str {
+        self.name
     }
 
     fn component(&self, vector: &str, axis: usize) -> String {
-        format!("{vector}.{}", AXES[axis])
+        named_component(vector, axis)
     }
 
     fn library_call(&self, function: &str, arguments: &[String]) -> Option<String> {

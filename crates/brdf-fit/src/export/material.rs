@@ -136,10 +136,15 @@ impl Material {
             path: path.to_owned(),
             error,
         })?;
-        match serde_json::from_slice(&bytes) {
-            Ok(Kind { format_version, .. }) => Self::of_model(path, format_version, &bytes),
+        Self::from_bytes(path, &bytes)
+    }
+
+    /// The same of the content of a file.
+    pub(crate) fn from_bytes(path: &Path, bytes: &[u8]) -> Result<Self, MaterialError> {
+        match serde_json::from_slice(bytes) {
+            Ok(Kind { format_version, .. }) => Self::of_model(path, format_version, bytes),
             // Where it is neither, the words of the error are those about a document.
-            Err(_) => Self::of_document(path, &Document::of_bytes(path, &bytes)?),
+            Err(_) => Self::of_document(path, &Document::of_bytes(path, bytes)?),
         }
     }
 

@@ -14,12 +14,15 @@ pub mod textbook;
 
 pub use python::{python, run_python};
 
+use std::ffi::OsStr;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use brdf_core::Parameters;
 use brdf_fit::Measurements;
+use escargot::format::Message as CargoMessage;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -40,47 +43,92 @@ pub fn shared_data() -> Option<PathBuf> {
     None
 }
 
-/// Runs the program `fit`, built once for all tests of a process.
-pub fn run_fit<S: AsRef<std::ffi::OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
+/// Runs the program `fit`.
+pub fn run_fit<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Output {
     fit_command()
         .args(arguments)
         .output()
         .expect("the program starts")
 }
 
+/// Runs a command with this text as its standard input.
+pub fn run_with_input(command: &mut Command, input: &[u8]) -> Output {
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut pipe = child.stdin.take().expect("a pipe");
+    // A program that ends on an error of usage does not read its input.
+    let _ = pipe.write_all(input);
+    drop(pipe);
+    child.wait_with_output().expect("the program ends")
+}
+
 /// The program `fit`, to be started.
 pub fn fit_command() -> Command {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "fit")))
+    Command::new(program_of_fit("fit"))
 }
 
-/// The program `trade`, to be started.
+/// The program `brdf`, to be started.
+pub fn brdf_command() -> Command {
+    Command::new(program_of_fit("brdf"))
+}
+
+/// `brdf trade`, to be started.
 pub fn trade_command() -> Command {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "trade")))
+    let mut command = brdf_command();
+    command.arg("trade");
+    command
 }
 
-/// The program `export`, to be started.
+/// `brdf export`, to be started.
 pub fn export_command() -> Command {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    Command::new(PROGRAM.get_or_init(|| built("brdf-fit", "export")))
+    let mut command = brdf_command();
+    command.arg("export");
+    command
 }
 
 /// The program `viewer`, to be started.
 pub fn viewer_command() -> Command {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    Command::new(PROGRAM.get_or_init(|| built("brdf-viewer", "viewer")))
+    static PROGRAMS: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    Command::new(named(
+        "viewer",
+        PROGRAMS.get_or_init(|| built("brdf-viewer")),
+    ))
 }
 
-fn built(package: &str, program: &str) -> PathBuf {
+/// One of the programs of `brdf-fit`, which are built once for all tests of a process.
+fn program_of_fit(name: &str) -> &'static Path {
+    static PROGRAMS: OnceLock<Vec<PathBuf>> = OnceLock::new();
+    named(name, PROGRAMS.get_or_init(|| built("brdf-fit")))
+}
+
+fn named<'a>(name: &str, programs: &'a [PathBuf]) -> &'a Path {
+    let found = programs
+        .iter()
+        .find(|program| program.file_stem().is_some_and(|stem| stem == name));
+    found.expect("a program of the package")
+}
+
+/// The programs of a package, built.
+fn built(package: &str) -> Vec<PathBuf> {
     let build = escargot::CargoBuild::new()
         .manifest_path(in_workspace("Cargo.toml"))
         .package(package)
-        .bin(program)
+        .bins()
         .current_release()
-        .current_target()
-        .run();
-    build.expect("the program builds").path().to_owned()
+        .current_target();
+    let messages = build.exec().expect("the programs build");
+    let programs = messages.filter_map(|message| {
+        let message = message.expect("the programs build");
+        match message.decode().expect("a message of cargo") {
+            CargoMessage::CompilerArtifact(artifact) => Some(artifact.executable?.into_owned()),
+            _ => None,
+        }
+    });
+    programs.collect()
 }
 
 /// A generator of random numbers that gives the same ones in every run.

@@ -174,7 +174,7 @@ fn an_index_that_is_missing_or_impossible() {
     let output = run_fit([scan.to_str().unwrap(), "--n", "0.63=1.5", "--params-only"]);
     assert_eq!(output.status.code(), Some(BAD));
     assert!(
-        stderr(&output).contains("no refractive index at 0.85223 um"),
+        stderr(&output).contains(", 0.85223 um: no refractive index: give it with --n 1.5"),
         "{}",
         stderr(&output)
     );
@@ -182,6 +182,30 @@ fn an_index_that_is_missing_or_impossible() {
         String::from_utf8_lossy(&output.stdout).contains(",ok\n"),
         "the other is delivered"
     );
+}
+
+#[test]
+fn an_error_in_the_options_is_printed_once() {
+    let scan = in_workspace("data/measured/z307_on_aluminium.csv");
+    let other = in_workspace("data/measured/titanium_anodise.csv");
+    let run = |arguments: &[&str]| {
+        let output = fit_command().arg(&scan).args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(BAD));
+        stderr(&output)
+    };
+    let wavelengths = format!("{}, 0.63079 um, 0.85223 um", scan.display());
+    let index = "no refractive index: give it with --n 1.5 or --n 0.63=1.60,0.85=1.58, by a column \
+                 n, or by a line \"# refractive_index: 1.5\" in the file\n";
+    let once = format!("error: {wavelengths}: {index}");
+    assert_eq!(run(&[]), once);
+    assert_eq!(run(&["--params-only", "--compare"]), once);
+    let both = run(&[other.to_str().unwrap()]);
+    assert!(both.starts_with(&format!("error: {wavelengths}; {}, ", other.display())));
+    assert!(both.lines().count() == 1 && both.ends_with(index), "{both}");
+    let stages = run(&["--n", "1.5", "--stage1", "none", "--stage2", "none"]);
+    assert_eq!(stages.lines().count(), 1, "{stages}");
+    assert!(stages.starts_with(&format!("error: {wavelengths}: no stage")));
+    assert!(stages.contains("--stage1"), "{stages}");
 }
 
 #[test]
@@ -204,11 +228,11 @@ fn usage_that_is_none() {
             vec!["--stage2", "none", "--stage1-limit", "5"],
             "stage 1 alone cannot be fitted: 0 readings up to 5 deg",
         ),
-        (vec!["--hold", "k3=1"], "\"k3\" is no parameter"),
-        (vec!["--hold", "k1"], "expected NAME=VALUE"),
-        (vec!["--hold", "k1=2000"], "k1 = 2000 cannot be fixed"),
+        (vec!["--fix", "k3=1"], "\"k3\" is no parameter"),
+        (vec!["--fix", "k1"], "expected NAME=VALUE"),
+        (vec!["--fix", "k1=2000"], "k1 = 2000 cannot be fixed"),
         (
-            vec!["--hold", "p=1"],
+            vec!["--fix", "p=1"],
             "p cannot be fixed: model three fits k2, kD, k1",
         ),
         (vec!["--nonsense"], "unexpected argument"),

@@ -1,14 +1,14 @@
-//! The program `fit` as its user meets it, on input that is in order.
+//! `fit`, and what `brdf` has around it, as their user meets them, on input that is in order.
 
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
-use std::process::{Output, Stdio};
+use std::process::{Command, Output, Stdio};
 
 use brdf_core::{Geometry, ThreeParameterBrdf};
 use brdf_fit::report::{CURVE_COLUMNS, Document, PARAMETER_COLUMNS};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
-use brdf_tests::{fit_command, in_workspace, run_fit};
+use brdf_tests::{brdf_command, fit_command, in_workspace, run_fit, run_with_input};
 use serde_json::Value;
 
 fn measured(file: &str) -> String {
@@ -320,9 +320,9 @@ fn stages_methods_limit_and_weights_can_be_chosen() {
 }
 
 #[test]
-fn parameters_can_be_held() {
+fn parameters_can_be_fixed() {
     let path = measured("z307_on_aluminium.csv");
-    let output = run_fit([path.as_str(), "--n", "1.5", "--hold", "K1=0.2,kd=0.02"]);
+    let output = run_fit([path.as_str(), "--n", "1.5", "--fix", "K1=0.2,kd=0.02"]);
     succeeded(&output);
     let text = stdout(&output);
     assert!(text.contains("  fixed: kD = 0.02, k1 = 0.2\n"), "{text}");
@@ -336,7 +336,7 @@ fn parameters_can_be_held() {
         path.as_str(),
         "--n",
         "1.5",
-        "--hold",
+        "--fix",
         "k1=0.2",
         "--params-only",
         "--compare",
@@ -345,6 +345,171 @@ fn parameters_can_be_held() {
     let text = stdout(&output);
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     assert!(reader.records().all(|record| &record.unwrap()[6] == "0.2"));
+}
+
+#[test]
+fn hold_is_an_older_name_of_fix() {
+    let path = measured("z307_on_aluminium.csv");
+    let run = |option: &str| {
+        let output = run_fit([
+            path.as_str(),
+            "--n",
+            "1.5",
+            "--params-only",
+            option,
+            "k1=0.2",
+        ]);
+        succeeded(&output);
+        stdout(&output)
+    };
+    assert_eq!(run("--fix"), run("--hold"));
+    assert!(run("--fix").contains(",0.2,"));
+}
+
+#[test]
+fn the_limit_of_the_energy_constraint_follows_with_or_without_an_equals_sign() {
+    let path = measured("z307_on_aluminium.csv");
+    let limit = |words: &[&str]| {
+        let arguments = [words, &["--n", "1.5", "--model", "lambert", "--json", "-"]].concat();
+        let output = run_fit(arguments);
+        succeeded(&output);
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let limit = &document["reports"][0]["fit"]["options"]["energy_limit"];
+        limit.as_f64().unwrap().to_degrees().round()
+    };
+    let option = "--energy-conserving";
+    for (words, expected) in [
+        (vec![path.as_str(), option, "80"], 80.0),
+        (vec![option, "80", &path], 80.0),
+        (vec!["--energy-conserving=80", &path], 80.0),
+        (vec![&path, "--energy-conserving=80"], 80.0),
+        (vec![option, &path], 85.0),
+        (vec![&path, option], 85.0),
+    ] {
+        assert_eq!(limit(&words), expected, "{words:?}");
+    }
+}
+
+#[test]
+fn a_scan_whose_name_is_a_number_is_no_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(measured("z307_on_aluminium.csv"), folder.path().join("80")).unwrap();
+    let output = fit_command()
+        .current_dir(folder.path())
+        .args(["--n", "1.5", "--model", "lambert", "--params-only"])
+        .args(["--energy-conserving", "80"])
+        .output()
+        .unwrap();
+    succeeded(&output);
+    assert!(stdout(&output).contains("\n80,0.63079,"));
+}
+
+/// The tables without the lines that contain times.
+fn without_stages(text: &str) -> String {
+    let lines = text.lines().filter(|line| !line.starts_with("  stage "));
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn the_subcommand_is_the_program() {
+    let path = measured("z307_on_aluminium.csv");
+    let path = path.as_str();
+    let run = |arguments: &[&str]| {
+        let output = brdf_command().arg("fit").args(arguments).output().unwrap();
+        (output, run_fit(arguments))
+    };
+    for arguments in [
+        vec![path, "--n", "1.5"],
+        vec![path, "--n", "1.5", "--params-only", "--compare"],
+        vec![path, "--n", "1.5", "--curves", "-"],
+        vec![path],
+        vec![path, "--n", "1.5", "--fix", "p=1"],
+        vec!["no/such/scan.csv"],
+    ] {
+        let (of_brdf, of_fit) = run(&arguments);
+        assert_eq!(of_brdf.status, of_fit.status);
+        assert_eq!(of_brdf.stderr, of_fit.stderr);
+        let [of_brdf, of_fit] = [of_brdf, of_fit].map(|output| without_stages(&stdout(&output)));
+        assert_eq!(of_brdf, of_fit);
+        assert!(arguments.len() < 3 || arguments[2] != "1.5" || of_fit.len() > 100);
+    }
+    let (of_brdf, of_fit) = run(&["--help"]);
+    let help = stdout(&of_brdf).replace("Usage: brdf fit", "Usage: fit");
+    assert_eq!(help, stdout(&of_fit));
+
+    let folder = tempfile::tempdir().unwrap();
+    let [of_brdf, of_fit] = ["brdf.json", "fit.json"].map(|name| folder.path().join(name));
+    for (mut command, json) in [(brdf_command(), &of_brdf), (fit_command(), &of_fit)] {
+        if json == &of_brdf {
+            command.arg("fit");
+        }
+        let output = command
+            .args([path, "--n", "1.5", "--json"])
+            .arg(json)
+            .output();
+        succeeded(&output.unwrap());
+    }
+    assert_eq!(without_times(&of_brdf), without_times(&of_fit));
+}
+
+#[test]
+fn bash_completes_the_options() {
+    let output = brdf_command()
+        .args(["completions", "bash"])
+        .output()
+        .unwrap();
+    succeeded(&output);
+    let script = stdout(&output);
+    for expected in [
+        "_brdf()",
+        "--energy-conserving",
+        "export",
+        "trade",
+        "-F _brdf",
+    ] {
+        assert!(script.contains(expected), "no \"{expected}\" in:\n{script}");
+    }
+    let check = run_with_input(Command::new("bash").arg("-n"), script.as_bytes());
+    succeeded(&check);
+    let output = brdf_command()
+        .args(["completions", "sheel"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn the_figures_of_the_paper_are_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let figures = folder.path().join("new").join("figures");
+    let output = brdf_command()
+        .arg("figures")
+        .arg(&figures)
+        .output()
+        .unwrap();
+    succeeded(&output);
+    let files = stdout(&output);
+    assert!(files.lines().count() > 10 && files.lines().all(|file| Path::new(file).is_file()));
+}
+
+#[test]
+fn the_help_has_an_example_of_each_command() {
+    let output = brdf_command().arg("--help").output().unwrap();
+    succeeded(&output);
+    let text = stdout(&output);
+    for command in [
+        "fit",
+        "export",
+        "trade",
+        "trade fit",
+        "figures",
+        "completions",
+    ] {
+        assert!(
+            text.contains(&format!("brdf {command} ")),
+            "{command}:\n{text}"
+        );
+    }
 }
 
 #[test]

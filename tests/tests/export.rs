@@ -1,4 +1,4 @@
-//! The program `export` as its user meets it: which fits it takes, and what it says.
+//! `brdf export` as its user meets it: which fits it takes, and its messages.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -212,7 +212,7 @@ fn what_holds_no_fits_is_told_with_its_path() {
 fn fits_are_read_from_a_pipe() {
     let fits = Fits::of_scans(1);
     let mut command = std::process::Command::new("sh");
-    let pipe = "cat \"$1\" | \"$0\" /dev/stdin --to json";
+    let pipe = "cat \"$1\" | \"$0\" export /dev/stdin --to json";
     let program = export_command();
     command
         .args(["-c", pipe])
@@ -240,7 +240,7 @@ fn a_tolerance_is_above_0_and_below_1() {
 }
 
 #[test]
-fn an_option_that_says_nothing_about_a_form_is_an_error() {
+fn an_option_without_effect_on_the_format_is_an_error() {
     let fits = Fits::of(&[in_workspace("data/synthetic").join(SCANS[0])]);
     for (form, option, value) in [
         ("c", "grid", "psi=10"),
@@ -251,7 +251,7 @@ fn an_option_that_says_nothing_about_a_form_is_an_error() {
         let said = refused(&fits.json(), &["--to", form, &format!("--{option}"), value]);
         assert_eq!(
             said,
-            format!("error: --{option} says nothing about this form\n")
+            format!("error: --{option} has no effect on the format {form}\n")
         );
     }
 }

@@ -1,4 +1,4 @@
-//! The program `trade` as its user meets it. What it measures differs from machine to machine: only
+//! `brdf trade` as its user meets it. What it measures differs from machine to machine: only
 //! facts are tested, no speed.
 
 use std::fs;
@@ -132,6 +132,42 @@ fn the_model_of_a_fit_is_measured() {
     assert_eq!(measured["brdf"]["n"], fitted["n"]);
     assert_eq!(measured["brdf"]["p"], fitted["p"]);
     assert_eq!(measured["scene"]["coordinates"], "directions");
+}
+
+#[test]
+fn the_fit_to_measure_is_chosen_by_its_wavelength() {
+    let folder = tempfile::tempdir().unwrap();
+    let fit = folder.path().join("fit.json");
+    let fit = fit.to_str().unwrap();
+    run_fit([&z307(), "--n", "1.5", "--json", fit]);
+    let document = json(Path::new(fit));
+    let quick = [
+        "--in-plane",
+        "--incidence",
+        "10:20",
+        "--view",
+        "0:30",
+        "--tolerance",
+        "1e-2",
+    ];
+    for (wavelength, report) in [(None, 0), (Some("0.63"), 0), (Some("0.85"), 1)] {
+        let chosen = wavelength.map(|wavelength| ["--wavelength", wavelength]);
+        let mut arguments = vec!["--model", fit, "--json", "-"];
+        arguments.extend(chosen.iter().flatten());
+        let output = run(&[&arguments, quick.as_slice()].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let measured: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let expected = &document["reports"][report]["fit"]["parameters"]["k1"];
+        assert_eq!(&measured["brdf"]["k1"], expected);
+    }
+    let output = run(&["--model", fit, "--wavelength", "0.7"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        stderr(&output),
+        format!("error: {fit}: no fit of 0.7 um: expected one of 0.63079 um, 0.85223 um\n")
+    );
+    let output = run(&["--wavelength", "0.63"]);
+    assert_eq!(output.status.code(), Some(2));
 }
 
 #[test]

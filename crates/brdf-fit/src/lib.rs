@@ -28,6 +28,7 @@
 //! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
 //! on screens only, with `_deg` in the name.
 
+pub mod cli;
 pub mod export;
 pub mod fit;
 pub mod format;

@@ -12,6 +12,7 @@ pub mod goniometer;
 pub mod merl;
 mod options;
 mod scan;
+mod stream;
 mod text;
 pub mod zemax;
 

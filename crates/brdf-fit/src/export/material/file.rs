@@ -44,10 +44,20 @@ impl Material {
             path: path.to_owned(),
             error,
         })?;
-        match serde_json::from_slice(&bytes) {
-            Ok(Kind { format_version, .. }) => from_model(path, format_version, &bytes),
+        Self::from_bytes(path, &bytes)
+    }
+
+    /// Reads the fits from the content of a file; `path` stands for the file in errors.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`read`](Self::read).
+    pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Self, MaterialError> {
+        let path = path.as_ref();
+        match serde_json::from_slice(bytes) {
+            Ok(Kind { format_version, .. }) => from_model(path, format_version, bytes),
             // A file that is neither is reported as a damaged document.
-            Err(_) => from_document(path, &Document::of_bytes(path, &bytes)?),
+            Err(_) => from_document(path, &Document::of_bytes(path, bytes)?),
         }
     }
 

@@ -1,0 +1,10 @@
+//! `brdf fit`: fits scans, and prints or writes the result.
+
+mod arguments;
+mod output;
+mod run;
+mod settings;
+mod values;
+
+pub(super) use arguments::Arguments;
+pub(super) use run::run;

@@ -1,0 +1,60 @@
+//! Writes and prints the results of `brdf fit`.
+
+use std::io;
+
+use super::arguments::Arguments;
+use crate::cli::explain;
+use crate::cli::failure::Failure;
+use crate::cli::stream;
+use crate::output;
+use crate::read::Scan;
+use crate::report::{Document, Report, write_curves, write_folder, write_models, write_parameters};
+
+/// Writes the files and prints. A failure of one output does not prevent the others: all failures
+/// are returned.
+pub(super) fn deliver(
+    arguments: &Arguments,
+    scans: &[&Scan],
+    reports: Vec<Report>,
+) -> Vec<Failure> {
+    let scans = scans.iter().copied();
+    let mut failures = Vec::new();
+    if let Some(folder) = &arguments.plot {
+        let reports: Vec<(&Scan, &Report)> = scans.clone().zip(&reports).collect();
+        let written = write_folder(&reports, folder);
+        failures.extend(written.err().map(Failure::from));
+    }
+    if let Some(path) = &arguments.curves {
+        let fits = scans.zip(&reports);
+        let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
+        let written = stream::write(path, |writer| write_curves(fits, writer));
+        failures.extend(written.err().map(Failure::from));
+    }
+    let document = Document::new(reports);
+    if let Some(path) = &arguments.json {
+        let written = stream::write_json(path, &document);
+        failures.extend(written.err().map(Failure::from));
+    }
+    if arguments.on_standard_output().is_none() {
+        let printed = print(arguments, &document.reports);
+        failures.extend(printed.err().map(Failure::Print));
+    }
+    failures
+}
+
+/// Prints the tables, or the parameters as CSV.
+fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
+    let mut buffer = Vec::new();
+    if !arguments.params_only {
+        let texts: Vec<String> = reports
+            .iter()
+            .map(|report| explain::report(report.text(), &report.warnings))
+            .collect();
+        buffer.extend(texts.join("\n").bytes());
+    } else if arguments.compare || arguments.model.is_some() {
+        write_models(reports, &mut buffer)?;
+    } else {
+        write_parameters(reports, &mut buffer)?;
+    }
+    output::print(&buffer)
+}

@@ -1,0 +1,134 @@
+//! What the options of `brdf fit` ask of the library.
+
+use std::path::Path;
+
+use super::arguments::Arguments;
+use super::values::{ModelArgument, ReadingWeights};
+use crate::cli::failure::Failure;
+use crate::cli::stream::{self, Named, StreamError};
+use crate::fit::FitOptions;
+use crate::model::Model;
+use crate::objective::weights::Weights;
+use crate::read::ReadOptions;
+use crate::report::{Depth, Document, DocumentError, ModelChoice, PAGE};
+use crate::scan::{Convention, Format};
+use crate::solver::Method;
+
+impl Arguments {
+    pub(super) fn options(&self) -> FitOptions {
+        let method = |name: &str| name.parse::<Method>().ok();
+        FitOptions {
+            model: match self.model {
+                Some(ModelArgument::Given(model)) => model,
+                _ => Model::Three,
+            },
+            refractive_index: self.n.clone(),
+            weights: Weights {
+                g1: self.g1.clone().unwrap_or_default(),
+                g2: self.g2.clone().unwrap_or_default(),
+                by_sigma: matches!(self.weights, ReadingWeights::Sigma),
+                by_solid_angle: matches!(self.weights, ReadingWeights::SolidAngle),
+                mask_source: self.mask_source.to_radians(),
+                mask_mirror: self.mask_mirror.to_radians(),
+            },
+            stage1: method(&self.stage1),
+            stage1_limit: self.stage1_limit.to_radians(),
+            stage2: method(&self.stage2),
+            max_iterations: self.max_iterations,
+            robust: self.robust,
+            energy_limit: self.energy_conserving.map(f64::to_radians),
+            fixed: self.fix.unwrap_or_default(),
+            ..FitOptions::default()
+        }
+    }
+
+    /// How much is computed beside the fits: only what is printed or written.
+    pub(super) fn depth(&self) -> Depth {
+        let only_parameters = self.params_only && self.json.is_none() && self.plot.is_none();
+        match (only_parameters, self.compare) {
+            (true, _) => Depth::Fit,
+            (false, false) => Depth::Assessed,
+            (false, true) => Depth::Compared,
+        }
+    }
+
+    /// Whether each of the compared models gets a line of its own: with `--params-only --compare`.
+    pub(super) fn fits_every_model(&self) -> bool {
+        self.params_only && self.compare
+    }
+
+    /// The options for a scan, one for each of its models.
+    pub(super) fn for_each_model(&self, options: FitOptions) -> Vec<FitOptions> {
+        if !self.fits_every_model() {
+            return vec![options];
+        }
+        let with = |&model: &Model| options.with_model(model);
+        Model::WITH_REFERENCES.iter().map(with).collect()
+    }
+
+    pub(super) fn choice(&self) -> ModelChoice {
+        if self.model == Some(ModelArgument::Auto) && !self.fits_every_model() {
+            ModelChoice::Auto
+        } else {
+            ModelChoice::Given
+        }
+    }
+
+    /// Checks that no output replaces an input or another output, and that each standard stream is
+    /// used once.
+    pub(super) fn check_files(&self) -> Result<(), Failure> {
+        let inputs = self.files.iter().map(|file| ("FILE", file.as_path()));
+        let again = self.again.iter().map(|file| ("--again", file.as_path()));
+        if let Some(folder) = &self.plot {
+            stream::check_folder(("--plot", folder))?;
+        }
+        if let (true, Some((option, _))) = (self.params_only, self.on_standard_output()) {
+            let (first, second) = ("--params-only", option);
+            return Err(StreamError::OutputTwice { first, second }.into());
+        }
+        let page = self.plot.as_ref().map(|folder| folder.join(PAGE));
+        let page = page.as_ref().map(|page| ("--plot", page.as_path()));
+        stream::check(inputs.chain(again), self.data_files().chain(page))
+    }
+
+    /// The files of `--json` and `--curves`.
+    fn data_files(&self) -> impl Iterator<Item = Named<'_>> {
+        let files = [("--json", &self.json), ("--curves", &self.curves)];
+        let files = files.into_iter();
+        files.filter_map(|(option, path)| Some((option, path.as_deref()?)))
+    }
+
+    /// The output that is written to standard output in place of the tables.
+    pub(super) fn on_standard_output(&self) -> Option<Named<'_>> {
+        self.data_files().find(|(_, path)| stream::is_stream(path))
+    }
+
+    /// The document of `--again`.
+    pub(super) fn document(&self) -> Result<Option<Document>, DocumentError> {
+        self.again
+            .as_ref()
+            .map(|path| stream::document(path))
+            .transpose()
+    }
+
+    /// How a file is read: as the options say, next as the document states for this file, and next
+    /// with the sides that the options of the earlier run gave to its first file.
+    pub(super) fn read_options(&self, file: &Path, document: Option<&Document>) -> ReadOptions {
+        let known = document.and_then(|document| document.report_on(stream::shown(file)));
+        let first = document
+            .map(|document| &document.reports[0])
+            .filter(|first| {
+                matches!(first.format, Format::Csv | Format::Goniometer)
+                    && first.convention != Convention::default()
+            });
+        let sides = known.or(first).map(|report| report.convention);
+        ReadOptions {
+            format: self.format.or(known.map(|report| report.format)),
+            theta_positive: self
+                .theta_positive
+                .or(sides.map(|sides| sides.theta_positive)),
+            phi_zero: self.phi_zero.or(sides.map(|sides| sides.phi_zero)),
+            sample: self.sample.and_then(|count| usize::try_from(count).ok()),
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! The problems of a run, each of which is printed once.
+
+use crate::model::Model;
+use crate::output::print_error;
+
+use super::outcome::Outcome;
+
+/// What a problem concerns: a wavelength of a file and, where several models are fitted to it, one
+/// of them.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Place {
+    pub(super) file: String,
+    pub(super) wavelength_um: Option<f64>,
+    pub(super) model: Option<Model>,
+}
+
+/// A file and its wavelength as messages name them.
+pub(super) fn place(file: &str, wavelength_um: Option<f64>) -> String {
+    let wavelength = wavelength_um.map_or_else(String::new, |w| format!(", {w} um"));
+    format!("{file}{wavelength}")
+}
+
+/// One problem.
+#[derive(Debug)]
+enum Problem {
+    /// A single fit or a single file: printed as it is.
+    Single(String),
+    /// An option, at every place that it concerns.
+    Usage { message: String, places: Vec<Place> },
+}
+
+/// The problems of a run, in the order in which they were found.
+///
+/// An error in the options concerns every scan in the same way: it is collected, so that it is
+/// printed once with all files and wavelengths.
+#[derive(Debug, Default)]
+pub(super) struct Problems {
+    problems: Vec<Problem>,
+    outcome: Option<Outcome>,
+}
+
+impl Problems {
+    /// Adds a message that is printed as it is.
+    pub(super) fn add(&mut self, message: impl ToString, outcome: Outcome) {
+        self.problems.push(Problem::Single(message.to_string()));
+        self.outcome = self.outcome.max(Some(outcome));
+    }
+
+    /// Adds the failure of one fit.
+    pub(super) fn add_fit(&mut self, place: &Place, message: &str) {
+        let model = place
+            .model
+            .map_or_else(String::new, |model| format!(", {model}"));
+        let scan = self::place(&place.file, place.wavelength_um);
+        self.add(format!("{scan}{model}: {message}"), Outcome::Incomplete);
+    }
+
+    /// Adds an error in the options that a fit met.
+    pub(super) fn add_usage(&mut self, place: Place, message: String) {
+        self.outcome = Some(Outcome::Failed);
+        let known = self.problems.iter_mut().find_map(|problem| match problem {
+            Problem::Usage {
+                message: known,
+                places,
+            } if *known == message => Some(places),
+            _ => None,
+        });
+        match known {
+            Some(places) => places.push(place),
+            None => self.problems.push(Problem::Usage {
+                message,
+                places: vec![place],
+            }),
+        }
+    }
+
+    /// Prints every problem; the exit status that the worst of them asks for.
+    pub(super) fn print(&self) -> Outcome {
+        for problem in &self.problems {
+            print_error(&problem.text());
+        }
+        self.outcome.unwrap_or(Outcome::Complete)
+    }
+}
+
+impl Problem {
+    fn text(&self) -> String {
+        match self {
+            Self::Single(message) => message.clone(),
+            Self::Usage { message, places } => format!("{}: {message}", listed(places)),
+        }
+    }
+}
+
+/// Files with their wavelengths, and the models unless all of them are concerned.
+fn listed(places: &[Place]) -> String {
+    let (mut files, mut models): (Vec<(&str, Vec<f64>)>, Vec<String>) = (Vec::new(), Vec::new());
+    for place in places {
+        let known = files.iter().position(|(file, _)| *file == place.file);
+        let index = known.unwrap_or_else(|| {
+            files.push((&place.file, Vec::new()));
+            files.len() - 1
+        });
+        let wavelengths = &mut files[index].1;
+        wavelengths.extend(place.wavelength_um.filter(|w| !wavelengths.contains(w)));
+        let model = place.model.map(|model| model.to_string());
+        models.extend(model.filter(|model| !models.contains(model)));
+    }
+    let files = files.into_iter().map(|(file, wavelengths)| {
+        let wavelengths = wavelengths.iter().map(|w| format!(", {w} um"));
+        format!("{file}{}", wavelengths.collect::<String>())
+    });
+    let files = files.collect::<Vec<_>>().join("; ");
+    if models.is_empty() || models.len() == Model::WITH_REFERENCES.len() {
+        files
+    } else {
+        format!("{files}; {}", models.join(", "))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(file: &str, wavelength_um: Option<f64>, model: Option<Model>) -> Place {
+        Place {
+            file: file.to_owned(),
+            wavelength_um,
+            model,
+        }
+    }
+
+    #[test]
+    fn an_error_in_the_options_is_listed_once_with_all_its_places() {
+        let mut problems = Problems::default();
+        problems.add_usage(at("a.csv", Some(0.5), None), "no index".to_owned());
+        problems.add("b.csv: cannot be read", Outcome::Failed);
+        problems.add_usage(at("a.csv", Some(0.6), None), "no index".to_owned());
+        problems.add_usage(at("c.csv", None, None), "no index".to_owned());
+        let texts: Vec<String> = problems.problems.iter().map(Problem::text).collect();
+        assert_eq!(
+            texts,
+            [
+                "a.csv, 0.5 um, 0.6 um; c.csv: no index",
+                "b.csv: cannot be read"
+            ]
+        );
+    }
+
+    #[test]
+    fn models_are_listed_unless_all_are_concerned() {
+        let all = Model::WITH_REFERENCES.map(|model| at("a.csv", None, Some(model)));
+        assert_eq!(listed(&all), "a.csv");
+        assert_eq!(listed(&all[..2]), "a.csv; three, three+n");
+    }
+}

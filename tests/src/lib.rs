@@ -68,12 +68,12 @@ pub fn run_with_input(command: &mut Command, input: &[u8]) -> Output {
 
 /// The program `fit`, to be started.
 pub fn fit_command() -> Command {
-    Command::new(program_of_fit("fit"))
+    Command::new(program("fit"))
 }
 
 /// The program `brdf`, to be started.
 pub fn brdf_command() -> Command {
-    Command::new(program_of_fit("brdf"))
+    Command::new(program("brdf"))
 }
 
 /// `brdf trade`, to be started.
@@ -92,31 +92,27 @@ pub fn export_command() -> Command {
 
 /// The program `viewer`, to be started.
 pub fn viewer_command() -> Command {
-    static PROGRAMS: OnceLock<Vec<PathBuf>> = OnceLock::new();
-    Command::new(named(
-        "viewer",
-        PROGRAMS.get_or_init(|| built("brdf-viewer")),
-    ))
+    Command::new(program("viewer"))
 }
 
-/// One of the programs of `brdf-fit`, which are built once for all tests of a process.
-fn program_of_fit(name: &str) -> &'static Path {
+/// A program of the workspace. All programs are built once for all tests of a process.
+fn program(name: &str) -> &'static Path {
     static PROGRAMS: OnceLock<Vec<PathBuf>> = OnceLock::new();
-    named(name, PROGRAMS.get_or_init(|| built("brdf-fit")))
-}
-
-fn named<'a>(name: &str, programs: &'a [PathBuf]) -> &'a Path {
+    let programs = PROGRAMS.get_or_init(built);
     let found = programs
         .iter()
         .find(|program| program.file_stem().is_some_and(|stem| stem == name));
-    found.expect("a program of the package")
+    found.expect("a program of the workspace")
 }
 
-/// The programs of a package, built.
-fn built(package: &str) -> Vec<PathBuf> {
+/// The programs of the workspace, built.
+///
+/// They are built for the whole workspace, as the tests are: Cargo then chooses the same features of
+/// the dependencies, and compiles none of them a second time.
+fn built() -> Vec<PathBuf> {
     let build = escargot::CargoBuild::new()
         .manifest_path(in_workspace("Cargo.toml"))
-        .package(package)
+        .arg("--workspace")
         .bins()
         .current_release()
         .current_target();

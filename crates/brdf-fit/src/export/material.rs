@@ -10,7 +10,7 @@ use brdf_core::{AnyBrdf, ParameterError};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-use crate::report::{Document, DocumentError, Report, plain};
+use crate::report::{Document, DocumentError, Report, without_position};
 use crate::scan::WAVELENGTH_TOLERANCE;
 
 /// The version of the JSON of a [`Material`].
@@ -47,7 +47,7 @@ pub enum MaterialError {
     /// It looks like a model, and is damaged.
     #[error(
         "{}, line {}, column {}: {}: expected the model that export --to json writes",
-        path.display(), error.line(), error.column(), plain(.error)
+        path.display(), error.line(), error.column(), without_position(.error)
     )]
     Model {
         /// The file.
@@ -139,7 +139,7 @@ impl Material {
         match serde_json::from_slice(&bytes) {
             Ok(Kind { format_version, .. }) => Self::of_model(path, format_version, &bytes),
             // Where it is neither, the words of the error are those about a document.
-            Err(_) => Self::of_document(path, &Document::of_bytes(path, &bytes)?),
+            Err(_) => Self::of_document(path, &Document::from_bytes(path, &bytes)?),
         }
     }
 
@@ -387,7 +387,7 @@ mod tests {
             ..FitOptions::default()
         };
         let scan = Measurements::new(file, readings).unwrap();
-        Report::of(&scan, &options, Depth::Fit).0
+        Report::new(&scan, &options, Depth::Fit).0
     }
 
     #[test]
@@ -492,7 +492,7 @@ mod tests {
         ] {
             let said = folder.refused(content);
             assert!(
-                said.ends_with("expected JSON, as fit --json writes it"),
+                said.ends_with("expected JSON with a document of fits"),
                 "{said}"
             );
         }

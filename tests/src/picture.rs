@@ -3,7 +3,7 @@
 use std::error::Error;
 
 use brdf_fit::model::Model;
-use brdf_fit::report::{Depth, Report, figures_of};
+use brdf_fit::report::{Depth, Report, report_figures};
 use brdf_fit::{FitOptions, RefractiveIndex};
 
 use crate::{in_workspace, one_wavelength};
@@ -18,8 +18,8 @@ pub fn svg() -> Result<String, Box<dyn Error>> {
         refractive_index: Some(RefractiveIndex::Same(1.5)),
         ..FitOptions::default()
     };
-    let (report, _) = Report::of(&scan, &options, Depth::Fit);
-    let figures = figures_of(&scan, &report)?;
+    let (report, _) = Report::new(&scan, &options, Depth::Fit);
+    let figures = report_figures(&scan, &report)?;
     let figure = figures
         .into_iter()
         .find(|figure| figure.name == "theory-log");

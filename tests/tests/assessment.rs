@@ -1,4 +1,4 @@
-//! The options of the program that say what a fit is worth.
+//! The assessment of a fit by the program: cross-validation, model comparison, robust fits, energy.
 
 use std::fs;
 use std::process::Output;
@@ -29,16 +29,16 @@ fn text(extra: &[&str]) -> String {
 }
 
 #[test]
-fn the_tables_hold_intervals_prediction_ladder_and_physics() {
+fn the_tables_contain_intervals_cross_validation_models_and_physics() {
     let text = text(&["--n", "1.5"]);
     for part in [
-        "95 % over incidences",
+        "95 % incidence bootstrap",
         "correlations k2-kD",
-        "prediction of each incidence from the others: E = 19.3",
+        "leave-one-incidence-out cross-validation: E = 19.3",
         "  three+n        0.0925581",
         "verdict: power+n suffices",
         "reflectance rho(psi):",
-        "facet reflectance at normal incidence: k2 implies 0.0096, n = 1.5 means 0.0400",
+        "facet reflectance at normal incidence: k2 implies 0.0096, n = 1.5 implies 0.0400",
     ] {
         assert!(text.contains(part), "no \"{part}\" in\n{text}");
     }
@@ -46,7 +46,7 @@ fn the_tables_hold_intervals_prediction_ladder_and_physics() {
 }
 
 #[test]
-fn compare_adds_the_neighbours_and_a_line_for_each_model() {
+fn compare_adds_the_reference_models_and_a_line_for_each_model() {
     assert!(text(&["--n", "1.5", "--compare"]).contains("  ggx+n"));
     let csv = text(&["--n", "1.5", "--compare", "--params-only"]);
     let mut lines = csv.lines();
@@ -136,7 +136,7 @@ fn a_robust_fit_takes_the_index_of_the_file_for_its_assessment_too() {
         String::from_utf8_lossy(&output.stderr)
     );
     assert!(
-        text.contains("least squares fits without the rejected readings"),
+        text.contains("least-squares fits without the rejected readings"),
         "{text}"
     );
     assert!(text.contains("verdict: "), "{text}");
@@ -163,7 +163,9 @@ fn energy_is_conserved_where_asked_for() {
         String::from_utf8(output.stdout).unwrap()
     };
     let text = run("--energy-conserving=80");
-    assert!(text.contains("energy: fitted under rho(psi) <= 1 up to 80 deg, which raises E from"));
+    assert!(
+        text.contains("energy: constrained by rho(psi) <= 1 up to 80 deg, which raises E from")
+    );
     assert!(run("--energy-conserving").contains("up to 85 deg"));
 }
 
@@ -297,7 +299,7 @@ fn many_incidences_are_assessed_in_folds() {
     let output = run_fit([file.as_str(), "--n", "1.5"]);
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(
-        text.contains("prediction of each incidence from the others: E ="),
+        text.contains("leave-one-incidence-out cross-validation: E ="),
         "{text}"
     );
     assert!(text.contains("the 80 incidences are left out several at a time, in 24 folds"));

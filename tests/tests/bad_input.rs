@@ -272,7 +272,7 @@ fn documents_that_cannot_be_fitted_again() {
         ),
         (
             "{\"format_version\": 1, \"reports\": []}",
-            "fit.json: holds no fit",
+            "fit.json: contains no fit",
         ),
     ] {
         fs::write(&json, text).unwrap();

@@ -306,16 +306,16 @@ fn stages_methods_limit_and_weights_can_be_chosen() {
     assert!(text.contains("stage 1: psi <= 30 deg"));
     assert!(!run(&["--stage1", "none"]).contains("stage 1"));
     let alone = run(&["--stage2", "none"]);
-    assert!(alone.contains("stage 1 alone: all that follows is of psi <= 60 deg, 85 readings"));
+    assert!(alone.contains("stage 1 alone: all results below are for psi <= 60 deg, 85 readings"));
     assert!(!alone.contains("stage 2") && alone.contains("0.655175"));
     assert!(run(&["--stage2", "none", "--params-only"]).contains("ok (stage 1 alone)"));
-    assert!(run(&["--stage1-limit", "5"]).contains("stage 1 left out: 1 reading up to 5 deg"));
+    assert!(run(&["--stage1-limit", "5"]).contains("stage 1 skipped: 1 reading up to 5 deg"));
     let weighted = run(&["--g1", "60=1,70=0", "--g2", "-90=0.5,0=1"]);
     assert!(!weighted.contains("2.83966"));
     assert!(weighted.contains("readings weighted by g1(psi), g2(theta)"));
     let text = run(&["--max-iterations", "1"]);
     assert!(text.contains("stage 2 used up its iterations"));
-    assert!(text.contains("a lower minimum exists and was taken"));
+    assert!(text.contains("found and adopted a lower minimum"));
     assert!(text.contains("result       0.0228598    0.0179801     0.19076"));
 }
 
@@ -326,7 +326,7 @@ fn parameters_can_be_fixed() {
     succeeded(&output);
     let text = stdout(&output);
     assert!(text.contains("  fixed: kD = 0.02, k1 = 0.2\n"), "{text}");
-    assert!(text.contains("no lower minimum at the width that is fixed"));
+    assert!(text.contains("no lower minimum at the fixed k1"));
     let value_of = |name: &str| text.contains(&format!("\n  {name:<9}     "));
     assert!(
         value_of("k2") && !value_of("kD") && !value_of("k1"),
@@ -542,7 +542,7 @@ fn what_is_odd_about_the_readings_is_counted_and_kept() {
         "1 reading at the same angles as another one, all kept",
         "1 incidence angle: little is known of other incidences",
         "nothing was measured near the mirror direction",
-        "columns not used: temperature",
+        "unused columns: temperature",
     ] {
         assert!(text.contains(expected), "no \"{expected}\" in:\n{text}");
     }

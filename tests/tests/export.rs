@@ -186,7 +186,7 @@ fn what_holds_no_fits_is_told_with_its_path() {
     for (content, message) in [
         (
             "psi_deg",
-            ", line 1, column 1: expected value: expected JSON, as fit --json writes it",
+            ", line 1, column 1: expected value: expected JSON with a document of fits",
         ),
         (
             "{\"format_version\": 7, \"fits\": [{}]}",

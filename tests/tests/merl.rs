@@ -170,10 +170,10 @@ fn one_fit_is_exported_as_grey() {
 fn the_report_says_how_a_table_is_read() {
     let printed = succeeded(&fit(&coloured().path, &["--sample", "500"]));
     for said in [
-        "  read: MERL table, red taken for 0.611 um: f_r in the middle of each bin of theta_h, theta_d, \
+        "  input: MERL table, red taken for 0.611 um: f_r in the middle of each bin of theta_h, theta_d, \
          phi_d\n",
         "MERL table, blue taken for 0.464 um",
-        "  read: 500 of 1096216 readings, evenly over theta_h, theta_d and phi_d\n",
+        "  input: 500 of 1096216 readings, evenly over theta_h, theta_d and phi_d\n",
     ] {
         assert!(printed.contains(said), "{printed}");
     }

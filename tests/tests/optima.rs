@@ -65,7 +65,7 @@ fn a_sample_that_the_model_cannot_describe_is_said_to_be_one() {
     };
     for row in expected_optima(&folder.join("expected_optima.csv")) {
         let scan = one_wavelength(&folder.join(&row.file), row.wavelength_um);
-        let (report, _) = Report::of(&scan, &options, Depth::Fit);
+        let (report, _) = Report::new(&scan, &options, Depth::Fit);
         let says_so = report
             .text()
             .contains("the model does not describe this sample");

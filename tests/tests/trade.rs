@@ -203,7 +203,7 @@ fn bad_usage_is_named() {
         (vec!["--model", missing.to_str().unwrap()], "cannot be read"),
         (
             vec!["--model", &scan],
-            "expected JSON, as fit --json writes it",
+            "expected JSON with a document of fits",
         ),
         (vec!["fit", "no/such/scan.csv"], "no/such/scan.csv"),
         (vec!["fit", &scan], "refractive index"),

@@ -47,7 +47,7 @@ fn coverage(
             disturb(reading, normal(&mut generator));
         }
         let noisy = Measurements::new("simulated", readings).unwrap();
-        let (report, error) = Report::of(&noisy, options, Depth::Fit);
+        let (report, error) = Report::new(&noisy, options, Depth::Fit);
         assert_eq!(error, None);
         let uncertainty = report.uncertainty.unwrap();
         for (covered, parameter) in covered.iter_mut().zip(PARAMETERS) {
@@ -121,7 +121,7 @@ fn the_band_is_the_spread_of_the_curve() {
             reading.brdf += 0.003 * normal(&mut generator) / reading.theta.cos();
         }
         let noisy = Measurements::new("simulated", readings).unwrap();
-        let (report, _) = Report::of(&noisy, &options(row.n), Depth::Fit);
+        let (report, _) = Report::new(&noisy, &options(row.n), Depth::Fit);
         let fit = report.fit.unwrap();
         let brdf = ThreeParameterBrdf::new(fit.parameters, fit.n).unwrap();
         values.push(brdf.value(&at));
@@ -144,7 +144,7 @@ fn the_bootstrap_over_incidences_stands_beside_the_intervals() {
     for row in table {
         let path = in_workspace("data/measured").join(&row.file);
         let sample = one_wavelength(&path, row.wavelength_um);
-        let (report, _) = Report::of(&sample, &options(row.n), Depth::Assessed);
+        let (report, _) = Report::new(&sample, &options(row.n), Depth::Assessed);
         let uncertainty = report.uncertainty.unwrap();
         let assessment = report.assessment.unwrap();
         for spread in &assessment.bootstrap {

@@ -123,7 +123,7 @@ fn fits(c: &mut Criterion) {
         ("the same, neighbours", Depth::Compared),
     ] {
         group.bench_function(name, |b| {
-            b.iter(|| Report::of(black_box(&scan), &all, depth));
+            b.iter(|| Report::new(black_box(&scan), &all, depth));
         });
     }
     let start = fit(&scan, &options(None, lm, false))
@@ -245,7 +245,7 @@ fn table(c: &mut Criterion) {
         ),
     ] {
         group.bench_function(name, |b| {
-            b.iter(|| Channel::ALL.map(|one| Report::of(&channel(one), &options, depth)));
+            b.iter(|| Channel::ALL.map(|one| Report::new(&channel(one), &options, depth)));
         });
     }
     group.finish();

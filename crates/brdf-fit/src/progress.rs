@@ -272,7 +272,7 @@ mod tests {
         let given = ModelChoice::Given;
         let (watched, error) = Report::observed(&scan, &options, given, Depth::Assessed, &observer);
         assert_eq!(error, None);
-        let (plain, _) = Report::of(&scan, &options, Depth::Assessed);
+        let (plain, _) = Report::new(&scan, &options, Depth::Assessed);
         let fits = [&watched, &plain].map(|report| without_times(report.fit.clone().unwrap()));
         assert_eq!(fits[0], fits[1]);
         assert_eq!(watched.uncertainty, plain.uncertainty);

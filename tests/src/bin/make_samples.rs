@@ -1,4 +1,4 @@
-//! Writes `docs/samples.md`: what the models make of every measured sample beside the project.
+//! Writes `docs/samples.md`, the table of all models for every measured sample.
 
 use std::process::ExitCode;
 

@@ -109,7 +109,7 @@ pub(super) fn document(path: &Path) -> Result<Document, DocumentError> {
     if !is_stream(path) {
         return Document::read(path);
     }
-    Document::of_bytes(Path::new(INPUT), &bytes()?)
+    Document::from_bytes(Path::new(INPUT), &bytes()?)
 }
 
 /// Everything on standard input.

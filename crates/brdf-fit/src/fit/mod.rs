@@ -76,7 +76,7 @@ mod tests {
 
     use super::*;
     use crate::objective::{Objective, ObjectiveError};
-    use crate::report::{Depth, Report};
+    use crate::report::{Depth, Picture, Report, html, report_figures};
     use crate::scan::synthetic::scan;
     use crate::scan::{Measurement, RefractiveIndex};
 
@@ -164,7 +164,7 @@ mod tests {
             let fit = fit(&scan, &options()).unwrap();
             assert!((fit.parameters.k1 / 0.2 - 1.0).abs() < 0.1);
             assert!((fit.parameters.k2 / (0.3 * size) - 1.0).abs() < 0.1);
-            let report = Report::of(&scan, &options(), Depth::Fit).0;
+            let report = Report::new(&scan, &options(), Depth::Fit).0;
             assert_eq!(report.warnings.len(), usize::from(size > 1.0));
         }
     }
@@ -239,9 +239,9 @@ mod tests {
     fn stage_1_alone_is_the_fit_of_a_scan_that_ends_at_its_limit() {
         let (whole, options) = (rippled(), alone());
         let shorter = whole.up_to(options.stage1_limit);
-        let (report, error) = Report::of(&whole, &options, Depth::Assessed);
+        let (report, error) = Report::new(&whole, &options, Depth::Assessed);
         assert_eq!(error, None);
-        let (expected, _) = Report::of(&shorter, &self::options(), Depth::Assessed);
+        let (expected, _) = Report::new(&shorter, &self::options(), Depth::Assessed);
         let fit = report.fit.as_ref().unwrap();
         let short_fit = expected.fit.as_ref().unwrap();
         let same = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
@@ -278,16 +278,17 @@ mod tests {
 
     #[test]
     fn what_was_fitted_of_stage_1_alone_is_said() {
-        let (report, _) = Report::of(&rippled(), &alone(), Depth::Fit);
+        let (report, _) = Report::new(&rippled(), &alone(), Depth::Fit);
         assert_eq!(report.status(), "ok (stage 1 alone)");
         let (text, readings) = (report.text(), report.fit.as_ref().unwrap().readings);
         let line =
-            format!("stage 1 alone: all that follows is of psi <= 60 deg, {readings} readings");
+            format!("stage 1 alone: all results below are for psi <= 60 deg, {readings} readings");
         assert!(text.contains(&line) && !text.contains("stage 2"), "{text}");
-        let figures = crate::report::figures_of(&rippled(), &report).unwrap();
+        let figures = report_figures(&rippled(), &report).unwrap();
         let said = |f: &crate::plot::Figure| f.caption.contains("fitted to psi <= 60 deg alone");
         assert!(figures.iter().all(said));
-        let page = crate::report::html(&[(&report, &figures)]);
+        let pictures: Vec<Picture> = figures.iter().map(Picture::from).collect();
+        let page = html(&[(&report, &pictures)]);
         assert!(page.contains("stage 1 alone, psi &lt;= 60 deg"));
     }
 

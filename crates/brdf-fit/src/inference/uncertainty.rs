@@ -757,7 +757,7 @@ mod tests {
             reading.brdf *= 1.0 + 0.03 * (2.4 * i as f64).sin();
         }
         let scan = Measurements::new("test", readings).unwrap();
-        let (report, _) = Report::of(&scan, &options(model), Depth::Fit);
+        let (report, _) = Report::new(&scan, &options(model), Depth::Fit);
         (report.uncertainty.unwrap(), scan)
     }
 

@@ -251,6 +251,7 @@ mod tests {
     use crate::fit::robust::Loss;
     use crate::fit::{Fit, FitOptions, fit};
     use crate::objective::Objective;
+    use crate::progress::NoObserver;
     use crate::report::{Depth, ModelChoice, Report};
     use crate::scan::synthetic::scan;
     use crate::solver::Method;
@@ -444,7 +445,7 @@ mod tests {
             .with(Parameter::Kd, 0.12)
             .with(Parameter::K1, 0.3);
         let scan = rippled(0.1);
-        let (report, error) = Report::of(&scan, &options(Model::Three, fixed), Depth::Assessed);
+        let (report, error) = Report::new(&scan, &options(Model::Three, fixed), Depth::Assessed);
         assert_eq!(error, None);
         let fit = report.fit.clone().unwrap();
         let objective = Objective::new(&scan, Family::Paper, 1.5, &fit.options.weights).unwrap();
@@ -468,7 +469,7 @@ mod tests {
             energy_limit: Some(1.4),
             ..options(Model::PowerN, fixed)
         };
-        let (report, error) = Report::of(&rippled(0.1), &options, Depth::Compared);
+        let (report, error) = Report::new(&rippled(0.1), &options, Depth::Compared);
         assert_eq!(error, None);
         let fit = report.fit.unwrap();
         assert_eq!((fit.at().k1, fit.n), (0.25, 1.6));
@@ -489,8 +490,13 @@ mod tests {
     #[test]
     fn a_chosen_model_holds_what_it_has() {
         let options = options(Model::Three, holding(Parameter::K1, 0.3));
-        let auto = ModelChoice::Auto;
-        let (report, error) = Report::of_choice(&rippled(0.02), &options, auto, Depth::Fit);
+        let (report, error) = Report::observed(
+            &rippled(0.02),
+            &options,
+            ModelChoice::Auto,
+            Depth::Fit,
+            &NoObserver,
+        );
         assert_eq!(error, None);
         let fit = report.fit.unwrap();
         assert!(fit.model() == Model::Lambert || fit.parameters.k1 == 0.3);

@@ -1,17 +1,18 @@
-//! The parameters and the curves of fits as CSV.
+//! The parameters of fits, and their curves beside the readings, as CSV.
+//!
+//! Angles are in degrees, wavelengths in micrometres, BRDFs in 1/sr and E in percent.
 
 use std::io;
 
 use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 
-use super::Report;
+use super::run::Report;
 use crate::fit::Fit;
 use crate::format::in_degrees;
-use crate::plot::theory_curves;
 use crate::read::Scan;
 use crate::scan::Measurements;
 
-/// The header of the CSV for scripts. E is in percent, each over its own stage's readings.
+/// The columns of [`write_parameters`]. `stage1_e_percent` is E over the readings of stage 1.
 pub const PARAMETER_COLUMNS: [&str; 12] = [
     "file",
     "wavelength_um",
@@ -27,8 +28,8 @@ pub const PARAMETER_COLUMNS: [&str; 12] = [
     "status",
 ];
 
-/// The header of the CSV for scripts where models are chosen or compared: n is the fitted one where
-/// the model has it free, p the exponent.
+/// The columns of [`write_models`]. n is the fitted refractive index if the model fits it, p the
+/// exponent of the facet distribution.
 pub const MODEL_COLUMNS: [&str; 14] = [
     "file",
     "wavelength_um",
@@ -46,7 +47,11 @@ pub const MODEL_COLUMNS: [&str; 14] = [
     "p",
 ];
 
-/// Writes the CSV for scripts: one line a fit.
+/// Writes the parameters of fits, one line for each fit. The columns are [`PARAMETER_COLUMNS`].
+///
+/// # Errors
+///
+/// The writer fails.
 pub fn write_parameters(reports: &[Report], writer: impl io::Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(PARAMETER_COLUMNS)?;
@@ -56,7 +61,12 @@ pub fn write_parameters(reports: &[Report], writer: impl io::Write) -> io::Resul
     csv.flush()
 }
 
-/// Writes the CSV for scripts with the columns `model` and `p`: one line a fit.
+/// Writes the parameters and the models of fits, one line for each fit. The columns are
+/// [`MODEL_COLUMNS`].
+///
+/// # Errors
+///
+/// The writer fails.
 pub fn write_models(reports: &[Report], writer: impl io::Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(MODEL_COLUMNS)?;
@@ -70,11 +80,12 @@ pub fn write_models(reports: &[Report], writer: impl io::Write) -> io::Result<()
     csv.flush()
 }
 
+/// A number, or nothing.
 fn number(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-/// The line of a fit, in the order of [`PARAMETER_COLUMNS`].
+/// The values of [`PARAMETER_COLUMNS`].
 fn record(report: &Report) -> Vec<String> {
     let fit = report.fit.as_ref();
     let stage1 = fit.and_then(|fit| fit.stage1);
@@ -95,7 +106,7 @@ fn record(report: &Report) -> Vec<String> {
     record
 }
 
-/// The header of the curves.
+/// The columns of [`write_curves`].
 pub const CURVE_COLUMNS: [&str; 10] = [
     "file",
     "wavelength_um",
@@ -109,7 +120,7 @@ pub const CURVE_COLUMNS: [&str; 10] = [
     "fit_per_sr",
 ];
 
-/// The header of the curves of one BRDF.
+/// The columns of [`write_theory`].
 pub const THEORY_COLUMNS: [&str; 8] = [
     "file",
     "wavelength_um",
@@ -121,9 +132,14 @@ pub const THEORY_COLUMNS: [&str; 8] = [
     "theory_per_sr",
 ];
 
-/// Writes theory and experiment side by side, incidence by incidence: f_r as measured, of the
-/// initial values, of stage 1 and of the fit, at every reading, in the model's convention. The
-/// readings of a table are read once more.
+/// Writes the readings, one incidence after the other, with the BRDFs of the initial values, of
+/// stage 1 and of the fit at the angles of each. The columns are [`CURVE_COLUMNS`].
+///
+/// Angles are in the convention of the model. The readings of a table are read again.
+///
+/// # Errors
+///
+/// The writer fails, or the readings of a table cannot be read again.
 pub fn write_curves<'a>(
     fits: impl Iterator<Item = (&'a Scan, &'a Fit)>,
     writer: impl io::Write,
@@ -137,8 +153,14 @@ pub fn write_curves<'a>(
     csv.flush()
 }
 
-/// Writes theory and experiment side by side for one BRDF, incidence by incidence: f_r as measured
-/// and of the theory at every reading, in the model's convention.
+/// Writes the readings, one incidence after the other, with a BRDF at the angles of each. The columns
+/// are [`THEORY_COLUMNS`].
+///
+/// Angles are in the convention of the model.
+///
+/// # Errors
+///
+/// The writer fails.
 pub fn write_theory(
     measurements: &Measurements,
     brdf: &AnyBrdf,
@@ -150,39 +172,13 @@ pub fn write_theory(
     csv.flush()
 }
 
-/// Writes the theory alone, in the plane of incidence: f_r at these incidences psi in radians, at the
-/// view angles at which it is drawn; `name` says of what. The columns are those of
-/// [`write_theory`].
-pub fn write_theory_alone(
-    name: &str,
-    brdf: &AnyBrdf,
-    incidences: &[f64],
-    writer: impl io::Write,
-) -> io::Result<()> {
-    let mut csv = csv::Writer::from_writer(writer);
-    csv.write_record(THEORY_COLUMNS)?;
-    for curve in theory_curves(brdf, incidences) {
-        for at in &curve.theory {
-            let mut record = [(); 8].map(|()| String::new());
-            name.clone_into(&mut record[0]);
-            record[2] = in_degrees(curve.psi).to_string();
-            record[3] = at.theta_deg.to_string();
-            "0".clone_into(&mut record[4]);
-            record[7] = at.value.to_string();
-            csv.write_record(record)?;
-        }
-    }
-    csv.flush()
-}
-
 fn write_curves_of(
     measurements: &Measurements,
     fit: &Fit,
     csv: &mut csv::Writer<impl io::Write>,
 ) -> io::Result<()> {
-    let model = |at: ModelParameters| {
-        AnyBrdf::new(fit.model().family(), &at).map_err(|error| io::Error::other(error.to_string()))
-    };
+    let model =
+        |at: ModelParameters| AnyBrdf::new(fit.model().family(), &at).map_err(io::Error::other);
     let initial = model(ModelParameters {
         p: 1.0,
         ..ModelParameters::three(fit.initial.parameters, fit.n)
@@ -195,7 +191,8 @@ fn write_curves_of(
     write_readings(measurements, &[Some(initial), stage1, Some(last)], csv)
 }
 
-/// The readings incidence by incidence, each with the values of some BRDFs.
+/// Writes the readings, one incidence after the other and in ascending order of phi and theta, each
+/// with the values of some BRDFs.
 fn write_readings(
     measurements: &Measurements,
     theories: &[Option<AnyBrdf>],
@@ -212,9 +209,7 @@ fn write_readings(
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
         for reading in order.into_iter().map(|i| &readings[i]) {
-            let geometry = reading
-                .geometry()
-                .map_err(|error| io::Error::other(error.to_string()))?;
+            let geometry = reading.geometry().map_err(io::Error::other)?;
             let mut record = vec![
                 measurements.source.clone(),
                 number(reading.wavelength_um),

@@ -1,48 +1,52 @@
-//! The JSON document of a run, written and read again.
+//! The JSON document of fits: writing and reading it.
 
 use std::fs;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 use serde_json::error::Category;
 
-use super::Report;
+use super::run::Report;
 use crate::fit::{FORMAT_VERSION, FitOptions};
+use crate::output::is_standard_stream;
 use crate::scan::WAVELENGTH_TOLERANCE;
 
-/// The JSON document of a run.
+/// Reports on fits, as a JSON document.
+///
+/// It is serialised by [`write_json`](crate::output::write_json).
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Document {
-    /// [`FORMAT_VERSION`] of the program that wrote it.
+    /// [`FORMAT_VERSION`] of the program that wrote the document.
     pub format_version: u32,
     /// One report for each file and wavelength.
     pub reports: Vec<Report>,
 }
 
-/// Why a file cannot be read as the document of a run.
+/// Why a file cannot be read as a document of fits.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum DocumentError {
     /// The file cannot be opened or read.
     #[error("{}: cannot be read: {error}", path.display())]
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         error: io::Error,
     },
-    /// It is no JSON, or JSON of something else.
+    /// The content is not JSON, or JSON of another kind.
     #[error(
         "{}, line {}, column {}: {}: expected {}",
-        path.display(), error.line(), error.column(), plain(.error), expected(.error)
+        path.display(), error.line(), error.column(), without_position(.error), expected(.error)
     )]
     Json {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The error of the parser.
         error: serde_json::Error,
     },
-    /// It was written by a later version of the program.
+    /// The document was written by a later version of the program.
     #[error(
         "{}: format_version {found}: expected one from 1 to {FORMAT_VERSION} (was it written by a \
          later version?)",
@@ -54,36 +58,36 @@ pub enum DocumentError {
         /// Its version.
         found: u32,
     },
-    /// There is no fit in it.
-    #[error("{}: holds no fit: expected at least one report with a fit", path.display())]
+    /// The document contains no fit.
+    #[error("{}: contains no fit: expected at least one report with a fit", path.display())]
     NoFits {
         /// The file.
         path: PathBuf,
     },
 }
 
-/// What is wrong, without the place that the message has already.
-pub(crate) fn plain(error: &serde_json::Error) -> String {
+/// The message of a JSON error without the line and column at its end.
+pub(crate) fn without_position(error: &serde_json::Error) -> String {
     let text = error.to_string();
-    let place = format!(" at line {} column {}", error.line(), error.column());
-    text.strip_suffix(&place).unwrap_or(&text).to_owned()
+    let position = format!(" at line {} column {}", error.line(), error.column());
+    text.strip_suffix(&position).unwrap_or(&text).to_owned()
 }
 
 fn expected(error: &serde_json::Error) -> &'static str {
     match error.classify() {
-        Category::Data => "the document that fit --json writes",
-        _ => "JSON, as fit --json writes it",
+        Category::Data => "a document of fits",
+        _ => "JSON with a document of fits",
     }
 }
 
-/// What every version has.
+/// The part of a document that every version has.
 #[derive(Deserialize)]
 struct Version {
     format_version: u32,
 }
 
 impl Document {
-    /// A document of this version.
+    /// A document of the current version.
     pub fn new(reports: Vec<Report>) -> Self {
         Self {
             format_version: FORMAT_VERSION,
@@ -91,39 +95,53 @@ impl Document {
         }
     }
 
-    /// Reads a document with at least one fit, of this version or an earlier one.
+    /// Reads a document from a file; `-` reads from standard input.
+    ///
+    /// # Errors
+    ///
+    /// See [`from_bytes`](Self::from_bytes); or the file cannot be read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, DocumentError> {
         let path = path.as_ref();
-        let bytes = fs::read(path).map_err(|error| DocumentError::Io {
-            path: path.to_owned(),
+        let (source, bytes) = if is_standard_stream(path) {
+            let mut bytes = Vec::new();
+            let read = io::stdin().lock().read_to_end(&mut bytes);
+            (Path::new("standard input"), read.map(|_| bytes))
+        } else {
+            (path, fs::read(path))
+        };
+        let bytes = bytes.map_err(|error| DocumentError::Io {
+            path: source.to_owned(),
             error,
         })?;
-        Self::of_bytes(path, &bytes)
+        Self::from_bytes(source, &bytes)
     }
 
-    /// The same of what is in the file.
-    pub(crate) fn of_bytes(path: &Path, bytes: &[u8]) -> Result<Self, DocumentError> {
+    /// Parses a document of the current or an earlier version; `source` names it in errors.
+    ///
+    /// # Errors
+    ///
+    /// The content is no such document, or contains no fit.
+    pub fn from_bytes(source: impl AsRef<Path>, bytes: &[u8]) -> Result<Self, DocumentError> {
+        let path = || source.as_ref().to_owned();
         let json = |error| DocumentError::Json {
-            path: path.to_owned(),
+            path: path(),
             error,
         };
         let Version { format_version } = serde_json::from_slice(bytes).map_err(json)?;
         if !(1..=FORMAT_VERSION).contains(&format_version) {
             return Err(DocumentError::Version {
-                path: path.to_owned(),
+                path: path(),
                 found: format_version,
             });
         }
         let document: Self = serde_json::from_slice(bytes).map_err(json)?;
         if document.reports.iter().all(|report| report.fit.is_none()) {
-            return Err(DocumentError::NoFits {
-                path: path.to_owned(),
-            });
+            return Err(DocumentError::NoFits { path: path() });
         }
         Ok(document)
     }
 
-    /// A report on a file: by its path, next by its name.
+    /// The first report on a file with this path, or else with this file name.
     pub fn report_on(&self, source: &Path) -> Option<&Report> {
         let reports = || self.reports.iter();
         let same_name =
@@ -133,10 +151,11 @@ impl Document {
             .or_else(|| reports().find(same_name))
     }
 
-    /// The options by which a scan of one wavelength, in micrometres, of a file was fitted: those of
-    /// the fit whose wavelength is within 1 % of its own, or which states none either. Of several it
-    /// is the one of the same file, next by the file's name, next by the nearest wavelength, and else
-    /// the first.
+    /// The options of the fit that matches a scan of a file at one wavelength, in micrometres.
+    ///
+    /// A fit matches if its wavelength is within 1 %, or if neither states a wavelength. Among several
+    /// matches, the same path takes precedence, then the same file name, then the nearest wavelength,
+    /// then the order in the document.
     pub fn options_for(&self, source: &str, wavelength_um: Option<f64>) -> Option<&FitOptions> {
         let source = Path::new(source);
         let key = |report: &Report| {
@@ -157,7 +176,7 @@ impl Document {
     }
 }
 
-/// How far a wavelength is from a wanted one, as a fraction; `None` where it is another.
+/// The relative difference of a wavelength from a wanted one; `None` if they do not match.
 fn distance(wavelength_um: Option<f64>, wanted: Option<f64>) -> Option<f64> {
     match (wavelength_um, wanted) {
         (Some(wavelength), Some(wanted)) => {
@@ -173,7 +192,7 @@ mod tests {
     use brdf_core::Parameters;
 
     use super::*;
-    use crate::report::Depth;
+    use crate::report::run::Depth;
     use crate::scan::synthetic::scan;
     use crate::{Measurements, RefractiveIndex};
 
@@ -183,12 +202,12 @@ mod tests {
             max_iterations,
             ..FitOptions::default()
         };
-        let (mut report, _) = Report::of(&of(file, wavelength_um), &options, Depth::Fit);
+        let (mut report, _) = Report::new(&measurements(file, wavelength_um), &options, Depth::Fit);
         report.file = file.to_owned();
         report
     }
 
-    fn of(file: &str, wavelength_um: Option<f64>) -> Measurements {
+    fn measurements(file: &str, wavelength_um: Option<f64>) -> Measurements {
         let scan = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
         let mut readings = scan.readings().to_vec();
         for reading in &mut readings {
@@ -222,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn a_written_document_is_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("fit.json");
         let document = Document::new(vec![report("x.csv", None, 5)]);
@@ -231,22 +250,22 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_document_is_named_with_its_place() {
+    fn errors_name_the_file_the_position_and_what_was_expected() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("fit.json");
         for (text, message) in [
             ("", "line 1, column 0"),
             ("{\n\"format_version\": oops", "line 2, column 19"),
-            (
-                "psi_deg,theta_deg",
-                "expected JSON, as fit --json writes it",
-            ),
-            ("[1]", "expected the document that fit --json writes"),
+            ("psi_deg,theta_deg", "expected JSON with a document of fits"),
+            ("[1]", "expected a document of fits"),
             (
                 "{\"format_version\": 99, \"more\": 1}",
                 "format_version 99: expected one from 1 to 1",
             ),
-            ("{\"format_version\": 1, \"reports\": []}", "holds no fit"),
+            (
+                "{\"format_version\": 1, \"reports\": []}",
+                "contains no fit",
+            ),
             (
                 "{\"format_version\": 1, \"reports\": [{}]}",
                 "missing field",

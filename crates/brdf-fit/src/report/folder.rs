@@ -1,4 +1,4 @@
-//! A folder with the pictures of all fits and the page that holds them.
+//! A folder with the figures of all fits and a page that contains them.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -6,22 +6,24 @@ use std::path::{Path, PathBuf};
 use brdf_core::{AnyBrdf, Geometry};
 use rayon::prelude::*;
 
-use super::{Report, html};
+use super::html::{Picture, html};
+use super::run::Report;
 use crate::output::{WriteError, write_file};
 use crate::plot::{Figure, PlotError, figures, write_figures};
 use crate::read::{ReadError, Scan};
 use crate::scan::Measurements;
 
-/// The name of the page.
+/// File name of the page.
 pub const PAGE: &str = "report.html";
 
-/// Why the folder could not be written whole.
+/// Why [`write_folder`] failed.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FolderError {
-    /// The readings of a table could not be read once more.
+    /// The readings of a table could not be read again.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// A picture could not be drawn or written.
+    /// A figure could not be drawn or written.
     #[error(transparent)]
     Plot(#[from] PlotError),
     /// The page could not be written.
@@ -29,8 +31,22 @@ pub enum FolderError {
     Write(#[from] WriteError),
 }
 
-/// Draws the pictures of each fit, as SVG and PNG named after its file and wavelength, and writes
-/// `report.html` with all of them and the tables. Returns the files that were written.
+impl<'a> From<&'a Figure> for Picture<'a> {
+    fn from(figure: &'a Figure) -> Self {
+        Self {
+            svg: &figure.svg,
+            caption: &figure.caption,
+        }
+    }
+}
+
+/// Writes the figures of each fit, as SVG and PNG named after its file and wavelength, and a page
+/// `report.html` with all figures and tables. Returns the written files.
+///
+/// # Errors
+///
+/// The readings of a table cannot be read again, a figure cannot be drawn, or a file cannot be
+/// written. Files written before the error remain.
 pub fn write_folder(
     reports: &[(&Scan, &Report)],
     folder: &Path,
@@ -44,15 +60,19 @@ pub fn write_folder(
         .par_iter()
         .zip(&prefixes)
         .map(|((scan, report), prefix)| {
-            let figures = figures_of(&*scan.pictured()?, report)?;
+            let figures = report_figures(&*scan.pictured()?, report)?;
             let files = write_figures(&figures, folder, prefix)?;
             Ok((figures, files))
         })
         .collect::<Result<_, FolderError>>()?;
-    let pages: Vec<(&Report, &[Figure])> = reports
+    let pictures: Vec<Vec<Picture<'_>>> = drawn
         .iter()
-        .zip(&drawn)
-        .map(|((_, report), (figures, _))| (*report, figures.as_slice()))
+        .map(|(figures, _)| figures.iter().map(Picture::from).collect())
+        .collect();
+    let pages: Vec<(&Report, &[Picture<'_>])> = reports
+        .iter()
+        .zip(&pictures)
+        .map(|((_, report), pictures)| (*report, pictures.as_slice()))
         .collect();
     let page = folder.join(PAGE);
     write_file(&page, |writer| writer.write_all(html(&pages).as_bytes()))?;
@@ -61,8 +81,15 @@ pub fn write_folder(
     Ok(files)
 }
 
-/// The pictures of a fit; none where there is none.
-pub fn figures_of(measurements: &Measurements, report: &Report) -> Result<Vec<Figure>, PlotError> {
+/// The figures of a fit; empty if the fit failed.
+///
+/// # Errors
+///
+/// A figure cannot be drawn.
+pub fn report_figures(
+    measurements: &Measurements,
+    report: &Report,
+) -> Result<Vec<Figure>, PlotError> {
     let Some(fit) = &report.fit else {
         return Ok(Vec::new());
     };
@@ -76,7 +103,7 @@ pub fn figures_of(measurements: &Measurements, report: &Report) -> Result<Vec<Fi
     }
 }
 
-/// File and wavelength, as a name of a file.
+/// The first part of the file names of a fit: its file and wavelength.
 fn prefix(report: &Report) -> String {
     let stem = Path::new(&report.file).file_stem();
     let stem = stem.map_or_else(
@@ -89,7 +116,7 @@ fn prefix(report: &Report) -> String {
     }
 }
 
-/// The name, or with a number where it is taken.
+/// The name, with a number appended if it is taken.
 fn unique(name: &str, taken: &mut HashSet<String>) -> String {
     let mut candidate = name.to_owned();
     let mut number = 2;

@@ -1,47 +1,44 @@
-//! The tables that a person reads.
+//! The report as plain text, in sections.
 
 use std::fmt::Write as _;
 
-use brdf_core::{ModelParameters, Parameters};
+use brdf_core::Parameters;
 
-use super::Report;
+use super::run::Report;
+use super::{incidences, models, parameters, stages};
+use crate::fit::Fit;
 use crate::fit::robust::REJECTED;
-use crate::fit::{Fit, Stage};
 use crate::format::{counted, digits, in_degrees, shortest};
 use crate::inference::assessment::{Assessment, Physics};
-use crate::inference::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
+use crate::inference::uncertainty::{Noise, Uncertainty};
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::objective::MOST_FOLDS;
-use crate::scan::Convention;
-use crate::scan::Measurement;
+use crate::scan::{Convention, Measurement};
 
-/// A part of what a person reads of a fit.
+/// A section of the text of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Section {
-    /// What it is of.
+    /// Its title, which [`Report::text`] does not show.
     pub title: &'static str,
-    /// Its lines, each ended, as they stand in [`Report::text`]; a blank line may come first.
+    /// Its lines, each terminated, as in [`Report::text`]; a blank line may come first.
     pub text: String,
 }
 
 impl Report {
-    /// The table that a person reads: a heading and the [sections](Self::sections).
+    /// The report as text: a heading and the [sections](Self::sections).
     pub fn text(&self) -> String {
         let sections = self.sections().into_iter().map(|section| section.text);
         std::iter::once(self.heading()).chain(sections).collect()
     }
 
-    /// The parts of [`text`](Self::text) below its heading, in their order; what there is nothing to
-    /// say of is left out.
+    /// The sections of [`text`](Self::text) below its heading, in their order, without empty ones.
     pub fn sections(&self) -> Vec<Section> {
-        let mut sections = self
-            .fit
-            .as_ref()
-            .map_or_else(Vec::new, |fit| self.of_fit(fit));
-        if self.fit.is_none() {
+        let mut sections = if let Some(fit) = &self.fit {
+            self.fit_sections(fit)
+        } else {
             let error = self.error.as_deref().unwrap_or("no fit");
-            sections.push(("error", format!("  error: {error}\n")));
-        }
+            vec![("error", format!("  error: {error}\n"))]
+        };
         sections.push(("warnings", self.warning_lines()));
         let sections = sections.into_iter();
         sections
@@ -50,19 +47,19 @@ impl Report {
             .collect()
     }
 
-    fn of_fit(&self, fit: &Fit) -> Vec<(&'static str, String)> {
+    fn fit_sections(&self, fit: &Fit) -> Vec<(&'static str, String)> {
         let assessment = self.assessment.as_ref();
         let check = global_check_line(fit) + &options_lines(fit, &self.rejected);
         let mut sections = vec![
-            ("stages", stage_table(fit)),
-            ("incidences", incidence_table(fit, assessment)),
+            ("stages", stages_section(fit)),
+            ("incidences", incidences_section(fit, assessment)),
             ("global check and options", check),
         ];
         if let Some(uncertainty) = &self.uncertainty {
-            sections.push(("parameters", parameter_table(uncertainty, assessment)));
+            sections.push(("parameters", parameters_section(uncertainty, assessment)));
         }
         if let Some(assessment) = assessment {
-            let models = prediction_line(fit, assessment) + &model_table(assessment);
+            let models = cross_validation_lines(fit, assessment) + &models_section(assessment);
             sections.push(("models", models));
             sections.push(("reflectance", physics_lines(&assessment.physics, fit)));
         }
@@ -75,11 +72,11 @@ impl Report {
             let _ = writeln!(text, "  warning: {warning}");
         }
         for conversion in &self.conversions {
-            let _ = writeln!(text, "  read: {conversion}");
+            let _ = writeln!(text, "  input: {conversion}");
         }
         if !self.ignored_columns.is_empty() {
             let columns = self.ignored_columns.join(", ");
-            let _ = writeln!(text, "  columns not used: {columns}");
+            let _ = writeln!(text, "  unused columns: {columns}");
         }
         text
     }
@@ -95,12 +92,7 @@ impl Report {
             .map_or_else(|| "wavelength not stated".to_owned(), |w| format!("{w} um"));
         let _ = write!(text, "  {wavelength}, ");
         if let Some(fit) = &self.fit {
-            let fitted = if fit.fits(Parameter::N) {
-                " (fitted)"
-            } else {
-                ""
-            };
-            let _ = write!(text, "n = {}{fitted}, ", shortest(fit.n));
+            let _ = write!(text, "{}, ", refractive_index(fit));
             if fit.model() != Model::Three {
                 let _ = write!(
                     text,
@@ -119,60 +111,24 @@ impl Report {
     }
 }
 
-fn stage_table(fit: &Fit) -> String {
-    let mut text = format!(
-        "\n  {:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{:>10}{:>7}{:>7}{:>9}  ended by\n",
-        "", "k2", "kD", "k1", "E own %", "E all %", "readings", "iter.", "eval.", "time us"
-    );
-    let mut line = |name: &str, p: &Parameters, own: f64, all: &str, rest: &str| {
-        let row = format!(
-            "  {name:<9}{:>13}{:>13}{:>13}{:>13}{:>13}{rest}",
-            digits(p.k2),
-            digits(p.kd),
-            digits(p.k1),
-            digits(own),
-            all
-        );
-        let _ = writeln!(text, "{}", row.trim_end());
+/// `n = 1.5`, or `n = 1.11776 (fitted)`.
+pub(super) fn refractive_index(fit: &Fit) -> String {
+    let fitted = if fit.fits(Parameter::N) {
+        " (fitted)"
+    } else {
+        ""
     };
-    let work = |stage: &Stage| {
-        format!(
-            "{:>10}{:>7}{:>7}{:>9.1}  {}: {}{}",
-            stage.readings,
-            stage.iterations,
-            stage.evaluations,
-            1e6 * stage.seconds,
-            stage.method.short_name(),
-            stage.termination,
-            further_parameters(fit, &stage.parameters)
-        )
-    };
-    line(
-        "initial",
-        &fit.initial.parameters,
-        fit.initial_e_percent.own,
-        &digits(fit.initial_e_percent.all),
-        "",
-    );
-    for (name, stage) in [("stage 1", &fit.stage1), ("stage 2", &fit.stage2)] {
-        let Some(stage) = stage else { continue };
-        let (at, e) = (stage.parameters.parameters(), stage.e_percent);
-        line(name, &at, e.own, &digits(e.all), &work(stage));
-    }
-    let scope = fit.options.scope();
-    if fit.last_stage().map(|stage| stage.parameters) != Some(fit.at()) {
-        // Of other readings than the fitted ones it is not told.
-        let all = scope
-            .as_ref()
-            .map_or_else(|| digits(fit.e_percent), |_| "-".to_owned());
-        line("result", &fit.parameters, fit.e_percent, &all, "");
-    }
+    format!("n = {}{fitted}", shortest(fit.n))
+}
+
+fn stages_section(fit: &Fit) -> String {
+    let mut text = format!("\n{}", stages::detailed(fit).text());
     if let Some(reason) = &fit.stage1_left_out {
-        let _ = writeln!(text, "  stage 1 left out: {reason}");
-    } else if let Some(scope) = scope {
+        let _ = writeln!(text, "  stage 1 skipped: {reason}");
+    } else if let Some(scope) = fit.options.scope() {
         let _ = writeln!(
             text,
-            "  stage 1 alone: all that follows is of {scope}, {}",
+            "  stage 1 alone: all results below are for {scope}, {}",
             counted(fit.readings, "reading")
         );
     } else if fit.stage1.is_some() {
@@ -188,6 +144,12 @@ fn stage_table(fit: &Fit) -> String {
     if !fixed.is_empty() {
         let _ = writeln!(text, "  fixed: {fixed}");
     }
+    text + &bound_lines(fit)
+}
+
+/// A line for each fitted parameter that is on a bound.
+fn bound_lines(fit: &Fit) -> String {
+    let mut text = String::new();
     let Parameters { k2, kd, k1 } = fit.parameters;
     for (parameter, on_bound, name) in [
         (Parameter::K2, k2 == 0.0, "k2 = 0"),
@@ -195,58 +157,26 @@ fn stage_table(fit: &Fit) -> String {
         (
             Parameter::K1,
             k2 > 0.0 && k1 == K1_RANGE.0,
-            "k1 = 1e-6, the smallest that is searched",
+            "k1 = 1e-6, the smallest value of the search",
         ),
         (
             Parameter::K1,
             k2 > 0.0 && k1 == K1_RANGE.1,
-            "k1 = 1e3, the largest that is searched",
+            "k1 = 1e3, the largest value of the search",
         ),
     ] {
-        if on_bound && fixed.get(parameter).is_none() {
+        if on_bound && fit.options.fixed.get(parameter).is_none() {
             let _ = writeln!(text, "  on its bound: {name}");
         }
     }
     text
 }
 
-/// n and p of a stage, where they are fitted.
-fn further_parameters(fit: &Fit, at: &ModelParameters) -> String {
+fn incidences_section(fit: &Fit, assessment: Option<&Assessment>) -> String {
     let mut text = String::new();
-    for parameter in [Parameter::N, Parameter::P] {
-        if fit.fits(parameter) {
-            let _ = write!(text, "; {parameter} = {}", digits(parameter.of(at)));
-        }
-    }
-    text
-}
-
-fn incidence_table(fit: &Fit, assessment: Option<&Assessment>) -> String {
-    const A_ROW: usize = 9;
-    let mut text = String::new();
-    for (i, chunk) in fit.incidences.chunks(A_ROW).enumerate() {
-        let row_start = i * A_ROW;
-        let row = |name: &str, cell: &dyn Fn(usize) -> String| {
-            let mut row = format!("  {name:<9}");
-            for i in 0..chunk.len() {
-                let _ = write!(row, "{:>13}", cell(i));
-            }
-            row.push('\n');
-            row
-        };
+    for table in incidences::side_by_side(fit, assessment) {
         text.push('\n');
-        text += &row("psi deg", &|i| chunk[i].psi_deg.to_string());
-        text += &row("readings", &|i| chunk[i].readings.to_string());
-        text += &row("E %", &|i| {
-            chunk[i].e_percent.map_or_else(|| "-".to_owned(), digits)
-        });
-        if let Some(prediction) = assessment.and_then(|a| a.prediction.as_ref()) {
-            let predicted = prediction.incidences.get(row_start..).unwrap_or_default();
-            text += &row("predicted", &|i| {
-                let e = predicted.get(i).and_then(|incidence| incidence.e_percent);
-                e.map_or_else(|| "-".to_owned(), digits)
-            });
-        }
+        text += &table.text();
     }
     text.push('\n');
     text
@@ -254,17 +184,17 @@ fn incidence_table(fit: &Fit, assessment: Option<&Assessment>) -> String {
 
 fn global_check_line(fit: &Fit) -> String {
     match &fit.global_check {
-        None => "  global check: left out\n".to_owned(),
+        None => "  global check: skipped\n".to_owned(),
         Some(check) if check.lower_minimum_taken => format!(
-            "  global check: a lower minimum exists and was taken (E {} % instead of {} %)\n",
+            "  global check: found and adopted a lower minimum (E {} % instead of {} %)\n",
             digits(fit.e_percent),
             digits(check.stage2_e_percent)
         ),
         Some(_) if fit.options.fixed.get(Parameter::K1).is_some() => {
-            "  global check: no lower minimum at the width that is fixed\n".to_owned()
+            "  global check: no lower minimum at the fixed k1\n".to_owned()
         }
         Some(check) => format!(
-            "  global check: no lower minimum for k1 from {:.0e} to {:.0e} ({} widths)\n",
+            "  global check: no lower minimum for k1 from {:.0e} to {:.0e} ({} values)\n",
             check
                 .profile
                 .first()
@@ -278,26 +208,26 @@ fn global_check_line(fit: &Fit) -> String {
     }
 }
 
-/// What other options than the paper's did.
+/// The effects of a robust loss and of the energy constraint.
 fn options_lines(fit: &Fit, rejected: &[Measurement]) -> String {
     let mut text = String::new();
     if let Some(robust) = &fit.robust {
         let _ = writeln!(
             text,
-            "  robust fit ({} loss): {} with less than half their weight; least squares has E = {} %",
+            "  robust fit ({} loss): {} at less than half their weight; least squares gives E = {} %",
             robust.loss,
             counted(robust.reduced, "reading"),
             digits(robust.least_squares_e_percent)
         );
         let _ = writeln!(
             text,
-            "  {} rejected, more than {REJECTED} standard deviations off",
+            "  {} rejected, with a residual above {REJECTED} standard deviations",
             counted(robust.rejected.len(), "reading")
         );
         for (reading, rejected) in rejected.iter().zip(&robust.rejected) {
             let _ = writeln!(
                 text,
-                "    psi {} deg, theta {} deg, phi {} deg: {} 1/sr, {:+.1} standard deviations off",
+                "    psi {} deg, theta {} deg, phi {} deg: {} 1/sr, residual {:+.1} standard deviations",
                 in_degrees(reading.psi),
                 in_degrees(reading.theta),
                 in_degrees(reading.phi),
@@ -311,95 +241,40 @@ fn options_lines(fit: &Fit, rejected: &[Measurement]) -> String {
         let _ = if energy.binding {
             writeln!(
                 text,
-                "  energy: fitted under rho(psi) <= 1 up to {limit} deg, which raises E from {} % to {} %",
+                "  energy: constrained by rho(psi) <= 1 up to {limit} deg, which raises E from {} % to {} %",
                 digits(energy.free_e_percent),
                 digits(fit.e_percent)
             )
         } else {
             writeln!(
                 text,
-                "  energy: rho(psi) <= 1 up to {limit} deg holds without any change"
+                "  energy: rho(psi) <= 1 up to {limit} deg is met by the unconstrained fit"
             )
         };
     }
     text
 }
 
-fn parameter_table(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> String {
-    let mut text = format!(
-        "\n  {:<9}{:>13}{:>13}{:>26}{:>26}{:>26}\n",
-        "", "value", "1 sigma", "68 %", "95 %", "95 % over incidences"
-    );
-    let bootstrap = |parameter: Parameter| {
-        let spread = assessment?
-            .bootstrap
-            .iter()
-            .find(|s| s.parameter == parameter)?;
-        let digits = |x: f64| rounded(x, spread.standard_deviation);
-        Some(format!("{} ... {}", digits(spread.from), digits(spread.to)))
+fn parameters_section(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> String {
+    let table = parameters::detailed(uncertainty, assessment).text();
+    let noise = if uncertainty.covered.is_empty() {
+        String::new()
+    } else {
+        noise_line(uncertainty)
     };
-    for estimate in &uncertainty.estimates {
-        let name = estimate.parameter.to_string();
-        let over = bootstrap(estimate.parameter).unwrap_or_else(|| "-".to_owned());
-        let _ = match &estimate.knowledge {
-            Knowledge::Determined {
-                standard_error,
-                interval_68,
-                interval_95,
-            } => {
-                let digits = |x: f64| rounded(x, *standard_error);
-                let interval = |i: &Interval| interval_text(i, &digits);
-                writeln!(
-                    text,
-                    "  {name:<9}{:>13}{:>13}{:>26}{:>26}{over:>26}",
-                    digits(estimate.value),
-                    digits(*standard_error),
-                    interval(interval_68),
-                    interval(interval_95),
-                )
-            }
-            Knowledge::OnBound { interval_95 } => {
-                let value = estimate.value;
-                let width = |end: Option<f64>| end.map_or(0.0, |end| (end - value).abs());
-                let error = 0.3 * width(interval_95.from).max(width(interval_95.to));
-                let interval = interval_text(interval_95, &|x| rounded(x, error));
-                writeln!(
-                    text,
-                    "  {name:<9}{:>13}{:>13}{:>26}{interval:>26}{over:>26}",
-                    digits(value),
-                    "on its bound",
-                    ""
-                )
-            }
-            Knowledge::HeldByEnergy => {
-                writeln!(
-                    text,
-                    "  {name:<9}{:>13}  held by rho <= 1",
-                    digits(estimate.value)
-                )
-            }
-            Knowledge::NotDetermined { reason, .. } => {
-                writeln!(text, "  {name:<9}not determined: {reason}")
-            }
-        };
-    }
-    if !uncertainty.covered.is_empty() {
-        text += &noise_line(uncertainty);
-    }
-    text
+    format!("\n{table}{noise}")
 }
 
-fn interval_text(interval: &Interval, digits: &dyn Fn(f64) -> String) -> String {
-    let end = |end: Option<f64>| end.map_or_else(|| "?".to_owned(), digits);
-    format!("{} ... {}", end(interval.from), end(interval.to))
-}
-
+/// Where the standard errors come from, and the correlations of the parameters.
 fn noise_line(uncertainty: &Uncertainty) -> String {
     let degrees = counted(uncertainty.degrees_of_freedom, "degree");
     let noise = match uncertainty.noise {
-        Noise::Residuals => format!("errors from the residuals, {degrees} of freedom"),
+        Noise::Residuals => {
+            format!("standard errors from the residuals, {degrees} of freedom")
+        }
         Noise::Given { reduced_chi_square } => format!(
-            "errors as the scan states them; reduced chi^2 {reduced_chi_square:.2}, {degrees} of freedom"
+            "standard errors from the standard deviations of the readings; reduced chi^2 \
+             {reduced_chi_square:.2}, {degrees} of freedom"
         ),
     };
     let correlations = uncertainty.correlations();
@@ -417,25 +292,29 @@ fn noise_line(uncertainty: &Uncertainty) -> String {
     format!("  {noise}; correlations {}\n", pairs.join(", "))
 }
 
-fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
+/// The scope of the assessment, and the error of the cross-validation.
+fn cross_validation_lines(fit: &Fit, assessment: &Assessment) -> String {
     let mut text = String::new();
+    let rejected = fit.robust.as_ref().map_or(0, |r| r.rejected.len());
     if assessment.readings < fit.readings {
+        let thinned = assessment.readings + rejected < fit.readings;
         let _ = writeln!(
             text,
-            "\n  assessed with {} of the {} readings, evenly over each incidence",
-            assessment.readings, fit.readings
+            "\n  the assessment uses {} of the {} readings{}",
+            assessment.readings,
+            fit.readings,
+            if thinned {
+                ", evenly distributed over each incidence"
+            } else {
+                ""
+            }
         );
     }
     if fit.energy.is_some_and(|energy| energy.binding) {
-        text += "\n  prediction and models are of fits without the condition rho <= 1\n";
+        text += "\n  cross-validation and models are fitted without the constraint rho <= 1\n";
     }
-    if fit
-        .robust
-        .as_ref()
-        .is_some_and(|robust| !robust.rejected.is_empty())
-    {
-        text +=
-            "\n  prediction and models are of least squares fits without the rejected readings\n";
+    if rejected > 0 {
+        text += "\n  cross-validation and models are least-squares fits without the rejected readings\n";
     }
     let incidences = fit.incidences.len();
     if incidences > MOST_FOLDS {
@@ -447,59 +326,35 @@ fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
     let _ = match &assessment.prediction {
         Some(prediction) => writeln!(
             text,
-            "\n  prediction of each incidence from the others: E = {} % (the fit: {} %)",
+            "\n  leave-one-incidence-out cross-validation: E = {} % (the fit: {} %)",
             digits(prediction.e_percent),
             digits(assessment.e_percent)
         ),
-        None if fit.incidences.len() < 2 => {
-            writeln!(text, "\n  prediction: a single incidence predicts nothing")
-        }
+        None if incidences < 2 => writeln!(
+            text,
+            "\n  no cross-validation: there is only a single incidence"
+        ),
         None => writeln!(
             text,
-            "\n  prediction: without any one incidence too few readings are left for a fit"
+            "\n  no cross-validation: without any one incidence too few readings remain for a fit"
         ),
     };
     text
 }
 
-/// The ladder of models with its verdict.
-fn model_table(assessment: &Assessment) -> String {
-    let mut text = format!(
-        "\n  {:<11}{:>13}{:>13}{:>10}  parameters (95 % interval)\n",
-        "model", "E %", "predicted %", "AICc"
+/// The compared models with the verdict.
+fn models_section(assessment: &Assessment) -> String {
+    let mut table = models::compact(assessment);
+    table.notes.push(
+        "(predicted: E of each incidence, predicted by a fit to the other incidences; AICc: \
+         difference from the best model, for independent normal errors)"
+            .to_owned(),
     );
-    for rung in &assessment.models {
-        let predicted = rung
-            .predicted_e_percent
-            .map_or_else(|| "-".to_owned(), digits);
-        let parameters: Vec<String> = rung
-            .estimates
-            .iter()
-            .map(|estimate| format!("{} {estimate}", estimate.parameter))
-            .collect();
-        let aicc = rung
-            .aicc_above_best
-            .map_or_else(|| "-".to_owned(), |aicc| format!("{aicc:+.1}"));
-        let energy = rung
-            .violation_deg
-            .map_or_else(String::new, |psi| format!("; rho > 1 from {psi:.0} deg"));
-        let _ = writeln!(
-            text,
-            "  {:<11}{:>13}{predicted:>13}{aicc:>10}  {}{energy}",
-            rung.model.name(),
-            digits(rung.e_percent),
-            parameters.join(", ")
-        );
-    }
-    for missing in &assessment.left_out {
-        let (name, reason) = (missing.model.name(), &missing.reason);
-        let _ = writeln!(text, "  {name:<11}not fitted: {reason}");
-    }
-    text += "  (predicted: E of each incidence predicted from the others; AICc: above the best, for independent normal errors)\n";
-    if let Some(verdict) = &assessment.verdict {
-        let _ = writeln!(text, "  verdict: {verdict}");
-    }
-    text
+    let verdict = assessment.verdict.as_ref();
+    table
+        .notes
+        .extend(verdict.map(|verdict| format!("verdict: {verdict}")));
+    format!("\n{}", table.text())
 }
 
 fn physics_lines(physics: &Physics, fit: &Fit) -> String {
@@ -516,7 +371,7 @@ fn physics_lines(physics: &Physics, fit: &Fit) -> String {
     if fit.parameters.k2 > 0.0 {
         let _ = writeln!(
             text,
-            "  facet reflectance at normal incidence: k2 implies {:.4}, n = {} means {:.4}",
+            "  facet reflectance at normal incidence: k2 implies {:.4}, n = {} implies {:.4}",
             physics.implied_facet_reflectance,
             shortest(fit.n),
             physics.fresnel_reflectance
@@ -528,7 +383,7 @@ fn physics_lines(physics: &Physics, fit: &Fit) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::Depth;
+    use crate::report::run::Depth;
     use crate::scan::synthetic::scan;
     use crate::{FitOptions, RefractiveIndex};
 
@@ -544,10 +399,10 @@ mod tests {
             sections.iter().map(|section| section.title).collect()
         };
         scan.source = "synthetic".to_owned();
-        let (failed, _) = Report::of(&scan, &options, Depth::Fit);
+        let (failed, _) = Report::new(&scan, &options, Depth::Fit);
         assert_eq!(titles(&failed), ["error", "warnings"]);
         options.refractive_index = Some(RefractiveIndex::Same(1.5));
-        let (report, _) = Report::of(&scan, &options, Depth::Assessed);
+        let (report, _) = Report::new(&scan, &options, Depth::Assessed);
         let all = [
             "stages",
             "incidences",

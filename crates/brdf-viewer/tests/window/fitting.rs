@@ -30,7 +30,7 @@ fn expected(change: impl FnOnce(&mut FitOptions)) -> Report {
         ..FitOptions::default()
     };
     change(&mut options);
-    Report::of(&scan, &options, Depth::Assessed).0
+    Report::new(&scan, &options, Depth::Assessed).0
 }
 
 fn check_same(window: &Window, expected: &Report) {
@@ -356,9 +356,9 @@ fn weights_by_sigma_are_those_of_the_library() {
         refractive_index: Some(RefractiveIndex::Same(1.5)),
         ..FitOptions::default()
     };
-    let plain = Report::of(&scan, &options, Depth::Fit).0.fit.unwrap();
+    let plain = Report::new(&scan, &options, Depth::Fit).0.fit.unwrap();
     options.weights.by_sigma = true;
-    check_same(&window, &Report::of(&scan, &options, Depth::Assessed).0);
+    check_same(&window, &Report::new(&scan, &options, Depth::Assessed).0);
     let e = report(&window).fit.unwrap().e_percent;
     assert_ne!(e, plain.e_percent);
     // And E of the sliders is with the same weights.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use brdf_core::ParameterError;
 
-use crate::report::{DocumentError, plain};
+use crate::report::{DocumentError, without_position};
 
 /// The version of the JSON format of a [`Material`](super::Material).
 pub(super) const FORMAT_VERSION: u32 = 1;
@@ -19,7 +19,7 @@ pub enum MaterialError {
     /// The file has the top-level keys of an exported model but is damaged.
     #[error(
         "{}, line {}, column {}: {}: expected an exported model",
-        path.display(), error.line(), error.column(), plain(.error)
+        path.display(), error.line(), error.column(), without_position(.error)
     )]
     Model {
         /// The file.

@@ -57,7 +57,7 @@ impl Material {
         match serde_json::from_slice(bytes) {
             Ok(Kind { format_version, .. }) => from_model(path, format_version, bytes),
             // A file that is neither is reported as a damaged document.
-            Err(_) => from_document(path, &Document::of_bytes(path, bytes)?),
+            Err(_) => from_document(path, &Document::from_bytes(path, bytes)?),
         }
     }
 
@@ -185,7 +185,7 @@ mod tests {
             ..FitOptions::default()
         };
         let scan = Measurements::new(file, readings).unwrap();
-        Report::of(&scan, &options, Depth::Fit).0
+        Report::new(&scan, &options, Depth::Fit).0
     }
 
     #[test]

@@ -111,7 +111,7 @@ mod tests {
     }
 
     /// The figures of readings with the fit of another scan, which figures do not check.
-    fn figures_of(readings: Vec<Measurement>) -> Vec<Figure> {
+    fn report_figures(readings: Vec<Measurement>) -> Vec<Figure> {
         let fit = fitted(&lacquer(), Model::Three);
         let measurements = Measurements::new("test", readings).unwrap();
         let figures = figures(&measurements, &fit, None).unwrap();
@@ -182,29 +182,29 @@ mod tests {
 
     #[test]
     fn few_and_extreme_readings_have_figures() {
-        assert_eq!(names(&figures_of(vec![reading(30.0, -30.0, 0.2)])), ALL);
-        let zeros = figures_of(
+        assert_eq!(names(&report_figures(vec![reading(30.0, -30.0, 0.2)])), ALL);
+        let zeros = report_figures(
             (0..9)
                 .map(|i| reading(30.0, 10.0 * f64::from(i), 0.0))
                 .collect(),
         );
         assert!(zeros[1].caption.contains("9 readings <= 0 not shown"));
-        let negative = figures_of(vec![reading(10.0, 5.0, -0.1), reading(10.0, 9.0, 0.2)]);
+        let negative = report_figures(vec![reading(10.0, 5.0, -0.1), reading(10.0, 9.0, 0.2)]);
         assert!(negative[1].caption.contains("1 reading <= 0 not shown"));
         assert!(negative[3].caption.contains("1 reading < 0 not shown"));
-        let small = figures_of(vec![reading(10.0, 5.0, 1e-30), reading(10.0, 9.0, 0.2)]);
+        let small = report_figures(vec![reading(10.0, 5.0, 1e-30), reading(10.0, 9.0, 0.2)]);
         assert!(
             small[1]
                 .caption
                 .contains("1 reading below the axis not shown")
         );
-        figures_of(vec![
+        report_figures(vec![
             reading(0.0, 0.0, f64::MAX),
             reading(0.0, 5.0, f64::MIN),
         ]);
         let mut grazing = reading(0.0, 0.0, 1.0);
         (grazing.psi, grazing.theta) = (FRAC_PI_2, -FRAC_PI_2);
-        figures_of(vec![grazing]);
+        report_figures(vec![grazing]);
     }
 
     #[test]
@@ -226,14 +226,20 @@ mod tests {
         out.phi = 1.0;
         let mut forward = reading(30.0, 40.0, 0.1);
         forward.phi = PI;
-        let figures = figures_of(vec![out, out, forward]);
+        let figures = report_figures(vec![out, out, forward]);
         assert!(
             figures[0]
                 .caption
                 .contains("2 readings out of the plane of incidence are not")
         );
-        assert_eq!(names(&figures_of(vec![out])), ["profile-k1", "reflectance"]);
-        assert_eq!(names(&figures_of(vec![])), ["profile-k1", "reflectance"]);
+        assert_eq!(
+            names(&report_figures(vec![out])),
+            ["profile-k1", "reflectance"]
+        );
+        assert_eq!(
+            names(&report_figures(vec![])),
+            ["profile-k1", "reflectance"]
+        );
     }
 
     #[test]
@@ -243,7 +249,7 @@ mod tests {
                 .step_by(20)
                 .map(move |theta| reading(f64::from(psi), f64::from(theta), 0.1))
         });
-        let figures = figures_of(readings.collect());
+        let figures = report_figures(readings.collect());
         assert!(figures[0].caption.contains("8 of 90 incidences are shown"));
         assert!(figures[0].svg.contains("psi = 89 deg"));
     }
@@ -251,7 +257,7 @@ mod tests {
     #[test]
     fn very_many_readings_do_not_inflate_the_figure() {
         let many = (0..200_000).map(|i| reading(10.0, 8e-4 * f64::from(i) - 80.0, 0.1));
-        let figures = figures_of(many.collect());
+        let figures = report_figures(many.collect());
         assert!(figures[0].svg.len() < 1_000_000);
         assert!(figures[0].caption.contains("readings are drawn"));
     }

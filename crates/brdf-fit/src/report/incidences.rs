@@ -1,0 +1,86 @@
+//! The error of each incidence as a table.
+
+use super::table::{Column, Row, Table};
+use crate::fit::Fit;
+use crate::format::digits;
+use crate::inference::assessment::Assessment;
+use crate::inference::cross_validation::Prediction;
+use crate::objective::IncidenceError;
+
+/// Incidences side by side in the text layout.
+const PER_TABLE: usize = 9;
+
+fn prediction(assessment: Option<&Assessment>) -> Option<&Prediction> {
+    assessment?.prediction.as_ref()
+}
+
+/// A number in percent, `-` where it is not defined.
+fn or_dash(percent: Option<f64>, format: impl Fn(f64) -> String) -> String {
+    percent.map_or_else(|| "-".to_owned(), format)
+}
+
+/// Tables with one column for each incidence, which number at most nine a table.
+pub(super) fn side_by_side(fit: &Fit, assessment: Option<&Assessment>) -> Vec<Table> {
+    let prediction = prediction(assessment);
+    let chunk = |(i, incidences): (usize, &[IncidenceError])| {
+        let mut columns = vec![Column::left("psi deg", 9)];
+        columns.extend(
+            incidences
+                .iter()
+                .map(|incidence| Column::right(incidence.psi_deg.to_string(), 13)),
+        );
+        let row = |name: &str, cells: &mut dyn Iterator<Item = String>| {
+            Row::new(std::iter::once(name.to_owned()).chain(cells))
+        };
+        let mut readings = incidences.iter().map(|i| i.readings.to_string());
+        let mut errors = incidences.iter().map(|i| or_dash(i.e_percent, digits));
+        let mut rows = vec![row("readings", &mut readings), row("E %", &mut errors)];
+        if let Some(prediction) = prediction {
+            let predicted = (i * PER_TABLE..).map(|i| prediction.incidences.get(i)?.e_percent);
+            let mut predicted = predicted.take(incidences.len()).map(|e| or_dash(e, digits));
+            rows.push(row("predicted", &mut predicted));
+        }
+        Table {
+            caption: "Incidences".to_owned(),
+            columns,
+            rows,
+            notes: Vec::new(),
+        }
+    };
+    let chunks = fit.incidences.chunks(PER_TABLE).enumerate();
+    chunks.map(chunk).collect()
+}
+
+/// A table with one row for each incidence, and one for all.
+pub(super) fn one_below_another(fit: &Fit, assessment: Option<&Assessment>) -> Table {
+    let prediction = prediction(assessment);
+    let percent = |e: Option<f64>| or_dash(e, |e| format!("{e:.3}"));
+    let row = |name: String, readings: usize, e: Option<f64>, predicted: Option<f64>| {
+        Row::new([name, readings.to_string(), percent(e), percent(predicted)])
+    };
+    let incidences = fit.incidences.iter().enumerate();
+    let mut rows: Vec<Row> = incidences
+        .map(|(i, incidence)| {
+            let predicted = prediction.and_then(|p| p.incidences.get(i)?.e_percent);
+            let name = incidence.psi_deg.to_string();
+            row(name, incidence.readings, incidence.e_percent, predicted)
+        })
+        .collect();
+    rows.push(row(
+        "all".to_owned(),
+        fit.readings,
+        Some(fit.e_percent),
+        prediction.map(|p| p.e_percent),
+    ));
+    Table {
+        caption: "Incidences".to_owned(),
+        columns: vec![
+            Column::left("psi deg", 9),
+            Column::right("readings", 13),
+            Column::right("E %", 13),
+            Column::right("predicted E %", 15),
+        ],
+        rows,
+        notes: Vec::new(),
+    }
+}

@@ -1,0 +1,217 @@
+//! The report on one wavelength of one file: the fit with everything that is computed from it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::fit::{Fit, FitError, FitOptions, fit_scan};
+use crate::inference::assessment::{Assessment, assess_observed, sufficient_model};
+use crate::inference::uncertainty::Uncertainty;
+use crate::inference::warning::{Warning, warnings};
+use crate::model::Model;
+use crate::progress::{NoObserver, Observer, Phase, Progress};
+use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
+use crate::solver::Termination;
+
+/// The result for one wavelength of one file.
+///
+/// ```
+/// use brdf_core::Parameters;
+/// use brdf_fit::report::{Depth, Report};
+/// use brdf_fit::scan::synthetic::scan;
+/// use brdf_fit::{FitOptions, RefractiveIndex};
+///
+/// let measurements = scan(Parameters::new(0.3, 0.1, 0.2)?, 1.5);
+/// let options = FitOptions {
+///     refractive_index: Some(RefractiveIndex::Same(1.5)),
+///     ..FitOptions::default()
+/// };
+/// let (report, error) = Report::new(&measurements, &options, Depth::Fit);
+/// assert_eq!(error, None);
+/// assert_eq!(report.status(), "ok");
+/// println!("{}", report.text());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Report {
+    /// Name of the file.
+    pub file: String,
+    /// Metadata from the file, such as the name of the sample.
+    pub metadata: Metadata,
+    /// Columns of the file that are not used.
+    pub ignored_columns: Vec<String>,
+    /// Angular convention with which the file was read.
+    #[serde(default)]
+    pub convention: Convention,
+    /// Format of the file.
+    #[serde(default)]
+    pub format: Format,
+    /// Conversions and omissions made while the file was read, one sentence each.
+    #[serde(default)]
+    pub conversions: Vec<String>,
+    /// Wavelength in micrometres, if the file states one.
+    pub wavelength_um: Option<f64>,
+    /// The model requested or, with [`ModelChoice::Auto`], chosen.
+    #[serde(default)]
+    pub model: Model,
+    /// Number of readings at this wavelength.
+    pub readings: usize,
+    /// The fit; `None` if it failed.
+    pub fit: Option<Fit>,
+    /// Message of the error that prevented or interrupted the fit or its assessment.
+    pub error: Option<String>,
+    /// Warnings about the data and the fit.
+    pub warnings: Vec<Warning>,
+    /// Standard errors and confidence intervals; `None` if no parameter was fitted.
+    #[serde(default)]
+    pub uncertainty: Option<Uncertainty>,
+    /// Cross-validation, physical plausibility and model comparison; `None` at [`Depth::Fit`].
+    #[serde(default)]
+    pub assessment: Option<Assessment>,
+    /// The readings that a robust fit rejects.
+    #[serde(default)]
+    pub rejected: Vec<Measurement>,
+}
+
+/// How much a report computes beside the fit and its uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Depth {
+    /// Nothing.
+    Fit,
+    /// The assessment, with all models of the hierarchy.
+    Assessed,
+    /// The assessment, with the reference models as well.
+    Compared,
+}
+
+/// Which model a report fits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ModelChoice {
+    /// The model of the options.
+    Given,
+    /// The smallest model of the hierarchy that predicts incidences outside the fit about as well as
+    /// the best of them: see [`Verdict`](crate::inference::assessment::Verdict).
+    Auto,
+}
+
+impl Report {
+    /// Fits one wavelength with the model of the options and reports on it.
+    ///
+    /// If the fit fails, its error is returned beside the report, which then contains the message and
+    /// whatever was complete.
+    pub fn new(
+        measurements: &Measurements,
+        options: &FitOptions,
+        depth: Depth,
+    ) -> (Self, Option<FitError>) {
+        Self::observed(
+            measurements,
+            options,
+            ModelChoice::Given,
+            depth,
+            &NoObserver,
+        )
+    }
+
+    /// [`new`](Self::new) with a choice of the model and with progress reports.
+    ///
+    /// Each iteration is reported to `observer`, which may cancel the computation. The error is then
+    /// [`FitError::Cancelled`], and the report contains whatever was complete.
+    pub fn observed(
+        measurements: &Measurements,
+        options: &FitOptions,
+        choice: ModelChoice,
+        depth: Depth,
+        observer: &dyn Observer,
+    ) -> (Self, Option<FitError>) {
+        let mut report = Self {
+            file: measurements.source.clone(),
+            metadata: measurements.metadata.clone(),
+            ignored_columns: measurements.ignored_columns.clone(),
+            convention: measurements.convention,
+            format: measurements.format,
+            conversions: measurements.conversions.clone(),
+            wavelength_um: measurements.wavelengths().first().copied().flatten(),
+            readings: measurements.readings().len(),
+            model: options.model,
+            warnings: Vec::new(),
+            fit: None,
+            error: None,
+            uncertainty: None,
+            assessment: None,
+            rejected: Vec::new(),
+        };
+        let filled = match choice {
+            ModelChoice::Given => report.fill(measurements, options, depth, observer),
+            ModelChoice::Auto => report.fill_chosen(measurements, options, depth, observer),
+        };
+        let error = filled.err();
+        report.error = error.as_ref().map(ToString::to_string);
+        (report, error)
+    }
+
+    fn fill_chosen(
+        &mut self,
+        measurements: &Measurements,
+        options: &FitOptions,
+        depth: Depth,
+        observer: &dyn Observer,
+    ) -> Result<(), FitError> {
+        // If no model can be fitted, this is the paper's, whose fit reports why.
+        self.model = sufficient_model(measurements, options, observer)?;
+        self.fill(
+            measurements,
+            &options.with_model(self.model),
+            depth,
+            observer,
+        )
+    }
+
+    fn fill(
+        &mut self,
+        measurements: &Measurements,
+        options: &FitOptions,
+        depth: Depth,
+        observer: &dyn Observer,
+    ) -> Result<(), FitError> {
+        let fitted = fit_scan(measurements, options, observer)?;
+        if let Some(robust) = &fitted.fit.robust {
+            let readings = measurements.readings();
+            let rejected = robust.rejected.iter().map(|r| readings[r.reading]);
+            self.rejected = rejected.collect();
+        }
+        let fit = self.fit.insert(fitted.fit.clone());
+        let progress = Progress::begin(observer, Phase::Uncertainty)?;
+        let uncertainty = Uncertainty::of_fit(&fitted, &progress)?;
+        let fitted_readings = options.fitted_readings(measurements);
+        self.warnings = warnings(&fitted_readings, fit, &uncertainty, &progress)?;
+        self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
+        if depth > Depth::Fit {
+            let compare = depth == Depth::Compared;
+            self.assessment = Some(assess_observed(measurements, fit, compare, observer)?);
+        }
+        Ok(())
+    }
+
+    /// How the fit ended, in one word: `ok`; `global` if the global check replaced the result by a
+    /// lower minimum; `iteration-limit`; each followed by ` (stage 1 alone)` if stage 2 was not
+    /// requested. If there is no fit: `failed: ` and the error.
+    pub fn status(&self) -> String {
+        let Some(fit) = &self.fit else {
+            return format!("failed: {}", self.error.as_deref().unwrap_or("no fit"));
+        };
+        let taken = fit
+            .global_check
+            .as_ref()
+            .is_some_and(|check| check.lower_minimum_taken);
+        let word = match fit.last_stage().map(|stage| stage.termination) {
+            _ if taken => "global",
+            Some(Termination::IterationLimit) => "iteration-limit",
+            _ => "ok",
+        };
+        let alone = if fit.stage2.is_none() {
+            " (stage 1 alone)"
+        } else {
+            ""
+        };
+        format!("{word}{alone}")
+    }
+}

@@ -3,7 +3,8 @@
 use std::error::Error;
 
 use brdf_fit::model::Model;
-use brdf_fit::report::{Depth, Report, report_figures};
+use brdf_fit::plot::report_figures;
+use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, RefractiveIndex};
 
 use crate::{in_workspace, one_wavelength};

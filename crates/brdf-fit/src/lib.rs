@@ -28,7 +28,9 @@
 //! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
 //! on screens only, with `_deg` in the name.
 
+#[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "export")]
 pub mod export;
 pub mod fit;
 pub mod format;
@@ -36,12 +38,14 @@ pub mod inference;
 pub mod model;
 pub mod objective;
 pub mod output;
+#[cfg(feature = "plot")]
 pub mod plot;
 pub mod progress;
 pub mod read;
 pub mod report;
 pub mod scan;
 pub mod solver;
+#[cfg(feature = "tradeoff")]
 pub mod tradeoff;
 
 pub use fit::{Fit, FitError, FitOptions, fit};

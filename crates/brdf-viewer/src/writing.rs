@@ -6,8 +6,9 @@ use std::sync::Arc;
 use brdf_core::{AnyBrdf, Geometry};
 use brdf_fit::Measurements;
 use brdf_fit::output::write_file;
+use brdf_fit::plot::write_theory_alone;
 use brdf_fit::plot::{self, View, figure_of};
-use brdf_fit::report::{Document, Report, write_theory, write_theory_alone};
+use brdf_fit::report::{Document, Report, write_theory};
 
 use crate::intent::Picture;
 use crate::job::{Layer, Writing};

@@ -11,9 +11,10 @@ use super::stream::{StreamError, shown};
 use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::output::{TakenError, WriteError};
+use crate::plot::FolderError;
 use crate::plot::PlotError;
 use crate::read::ReadError;
-use crate::report::{DocumentError, FolderError};
+use crate::report::DocumentError;
 
 /// Why a command failed, or one of its outputs.
 #[derive(Debug, thiserror::Error)]

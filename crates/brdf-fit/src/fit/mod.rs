@@ -76,7 +76,8 @@ mod tests {
 
     use super::*;
     use crate::objective::{Objective, ObjectiveError};
-    use crate::report::{Depth, Picture, Report, html, report_figures};
+    use crate::plot::report_figures;
+    use crate::report::{Depth, Picture, Report, html};
     use crate::scan::synthetic::scan;
     use crate::scan::{Measurement, RefractiveIndex};
 

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::format::as_degrees;
 use crate::scan::Side;
-use crate::scan::angle_between;
 
 /// The quantity that is plotted, of the readings and of the theory.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -140,6 +139,14 @@ impl View {
         let towards = (towards.to_degrees() * 100.0).round() / 100.0;
         format!("view angle theta / deg (positive towards phi = {towards} deg)")
     }
+}
+
+/// The angle between two azimuths in radians, from 0 to pi; 0 if they agree within the rounding of
+/// degrees.
+fn angle_between(a: f64, b: f64) -> f64 {
+    let turns = (a - b) / (2.0 * PI);
+    let angle = (turns - turns.round()).abs() * 2.0 * PI;
+    if angle < 1e-6 { 0.0 } else { angle }
 }
 
 #[cfg(test)]

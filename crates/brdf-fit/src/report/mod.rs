@@ -3,7 +3,6 @@
 
 mod csv;
 mod document;
-mod folder;
 mod html;
 mod incidences;
 mod models;
@@ -12,19 +11,17 @@ mod run;
 mod stages;
 mod table;
 mod text;
-mod theory;
 
 pub use csv::{
     CURVE_COLUMNS, MODEL_COLUMNS, PARAMETER_COLUMNS, THEORY_COLUMNS, write_curves, write_models,
     write_parameters, write_theory,
 };
 
+#[cfg(feature = "export")]
 pub(crate) use document::without_position;
 pub use document::{Document, DocumentError};
-pub use folder::{FolderError, PAGE, report_figures, write_folder};
 pub use html::{Picture, html};
 pub use models::{ModelTableFormat, model_table};
 pub use run::{Depth, ModelChoice, Report};
 pub use table::{Alignment, Column, Row, Table};
 pub use text::Section;
-pub use theory::write_theory_alone;

@@ -113,14 +113,6 @@ impl Measurement {
     }
 }
 
-/// The angle between two azimuths in radians, from 0 to pi; 0 if they agree within the rounding of
-/// degrees.
-pub(crate) fn angle_between(a: f64, b: f64) -> f64 {
-    let turns = (a - b) / (2.0 * PI);
-    let angle = (turns - turns.round()).abs() * 2.0 * PI;
-    if angle < 1e-6 { 0.0 } else { angle }
-}
-
 /// Angles that differ by less than this are equal, in radians: 0.05 deg, the setting accuracy of a
 /// goniometer.
 const SAME_ANGLE: f64 = 0.05 * PI / 180.0;

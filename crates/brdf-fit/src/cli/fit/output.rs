@@ -7,8 +7,9 @@ use crate::cli::explain;
 use crate::cli::failure::Failure;
 use crate::cli::stream;
 use crate::output;
+use crate::plot::write_folder;
 use crate::read::Scan;
-use crate::report::{Document, Report, write_curves, write_folder, write_models, write_parameters};
+use crate::report::{Document, Report, write_curves, write_models, write_parameters};
 
 /// Writes the files and prints. A failure of one output does not prevent the others: all failures
 /// are returned.

@@ -9,8 +9,9 @@ use crate::cli::stream::{self, Named, StreamError};
 use crate::fit::FitOptions;
 use crate::model::Model;
 use crate::objective::weights::Weights;
+use crate::plot::PAGE;
 use crate::read::ReadOptions;
-use crate::report::{Depth, Document, DocumentError, ModelChoice, PAGE};
+use crate::report::{Depth, Document, DocumentError, ModelChoice};
 use crate::scan::{Convention, Format};
 use crate::solver::Method;
 

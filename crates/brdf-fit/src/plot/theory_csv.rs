@@ -5,9 +5,9 @@ use std::io;
 
 use brdf_core::AnyBrdf;
 
-use super::csv::THEORY_COLUMNS;
+use super::curves::theory_curves;
 use crate::format::in_degrees;
-use crate::plot::theory_curves;
+use crate::report::THEORY_COLUMNS;
 
 /// Writes the curves of a BRDF in the plane of incidence, at incidence angles psi in radians.
 ///

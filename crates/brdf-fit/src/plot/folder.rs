@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use brdf_core::{AnyBrdf, Geometry};
 use rayon::prelude::*;
 
-use super::html::{Picture, html};
-use super::run::Report;
+use super::error::PlotError;
+use super::figure::Figure;
+use super::figures::figures;
+use super::write::write_figures;
 use crate::output::{WriteError, write_file};
-use crate::plot::{Figure, PlotError, figures, write_figures};
 use crate::read::{ReadError, Scan};
+use crate::report::{Picture, Report, html};
 use crate::scan::Measurements;
 
 /// File name of the page.

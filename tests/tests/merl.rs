@@ -223,7 +223,7 @@ fn small() -> Vec<u8> {
     let mut bytes = header([6, 5, 8]);
     for (channel, brdf) in Channel::ALL.into_iter().zip(channels()) {
         for bin in 0..SMALL.count() {
-            let middle = SMALL.middle([bin / 40, bin / 8 % 5, bin % 8]);
+            let middle = SMALL.centre([bin / 40, bin / 8 % 5, bin % 8]);
             let value = middle.map_or(-1.0, |at| value(&brdf, at) / channel.scale());
             bytes.extend(value.to_le_bytes());
         }
@@ -463,7 +463,7 @@ fn mitsuba_finds_the_values_of_the_core_in_the_bins_of_its_own_coordinates() {
         d.iter()
             .flat_map(move |&j| p.iter().map(move |&k| [i, j, k]))
     });
-    let middles = all.filter_map(|bin| Bins::USUAL.middle(bin));
+    let middles = all.filter_map(|bin| Bins::STANDARD.centre(bin));
     let at: Vec<_> = middles.filter(|at| at[0].max(at[1]) < 1.52).collect();
     assert!(at.len() > 1000);
     let Some(found) = found("mitsuba", "merl_in_mitsuba.py", Some(&bins), &at) else {
@@ -490,12 +490,12 @@ fn a_lookup_as_in_the_reference_code_finds_f_r_within_the_error_that_was_said() 
     };
     let bins: Vec<[usize; 3]> = serde_json::from_value(found["bins"].clone()).unwrap();
     for (&bin, &at) in bins.iter().zip(&at) {
-        assert_eq!(bin, Bins::USUAL.bin_of(at), "{at:?}");
+        assert_eq!(bin, Bins::STANDARD.bin_of(at), "{at:?}");
     }
     for (c, brdf) in channels().iter().enumerate() {
         let values = numbers(&found["channels"][c]);
         for (found, &bin) in values.iter().zip(&bins) {
-            let middle = value(brdf, Bins::USUAL.middle(bin).unwrap());
+            let middle = value(brdf, Bins::STANDARD.centre(bin).unwrap());
             assert!((found / middle - 1.0).abs() < 4.0 * f64::EPSILON, "{bin:?}");
         }
         let errors = values

@@ -11,7 +11,7 @@ use brdf_fit::model::{FixedParameters, Model};
 use brdf_fit::objective::weights::{AngleWeight, Weights};
 use brdf_fit::output::{self, TakenError, check_outputs, print_error, write_file, write_json};
 use brdf_fit::progress::{NoObserver, Observer, Step};
-use brdf_fit::read::{ReadError, ReadOptions, Scan};
+use brdf_fit::read::{LazyScan, ReadError, ReadOptions};
 use brdf_fit::report::{
     Depth, Document, DocumentError, ModelChoice, PAGE, Report, write_curves, write_folder,
     write_models, write_parameters,
@@ -399,11 +399,11 @@ fn told(report: &Report, error: &FitError, arguments: &Arguments) -> Outcome {
 }
 
 /// Reads every file, and complains about those that cannot be read.
-fn read_all(arguments: &Arguments, document: Option<&Document>) -> (Vec<Scan>, Outcome) {
-    let files: Vec<Result<Vec<Scan>, ReadError>> = arguments
+fn read_all(arguments: &Arguments, document: Option<&Document>) -> (Vec<LazyScan>, Outcome) {
+    let files: Vec<Result<Vec<LazyScan>, ReadError>> = arguments
         .files
         .par_iter()
-        .map(|file| Scan::of_file(file, &arguments.read_options(file, document)))
+        .map(|file| LazyScan::open(file, &arguments.read_options(file, document)))
         .collect();
     let mut outcome = Outcome::AllFitted;
     let mut scans = Vec::new();
@@ -420,12 +420,12 @@ fn read_all(arguments: &Arguments, document: Option<&Document>) -> (Vec<Scan>, O
 }
 
 /// A scan of one wavelength, and how it is fitted.
-type Job<'a> = (&'a Scan, FitOptions);
+type Job<'a> = (&'a LazyScan, FitOptions);
 
 /// The fits of all scans, in the order of the files, wavelengths and models; complains about scans
 /// of which the document says nothing.
 fn plan<'a>(
-    scans: &'a [Scan],
+    scans: &'a [LazyScan],
     arguments: &Arguments,
     document: Option<&Document>,
 ) -> (Vec<Job<'a>>, Outcome) {
@@ -520,13 +520,13 @@ fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<Made> {
 /// Writes the files and prints; what fails keeps nothing else from being delivered.
 fn deliver(
     arguments: &Arguments,
-    scans: &[&Scan],
+    scans: &[&LazyScan],
     reports: Vec<Report>,
 ) -> Result<(), Vec<String>> {
     let scans = scans.iter().copied();
     let mut failed = Vec::new();
     if let Some(folder) = &arguments.plot {
-        let reports: Vec<(&Scan, &Report)> = scans.clone().zip(&reports).collect();
+        let reports: Vec<(&LazyScan, &Report)> = scans.clone().zip(&reports).collect();
         failed.extend(
             write_folder(&reports, folder)
                 .err()

@@ -11,7 +11,7 @@ use brdf_core::{AnyBrdf, ModelParameters, ThreeParameterBrdf};
 use brdf_fit::model::Model;
 use brdf_fit::output::{self, check_outputs, print_error, write_file, write_json};
 use brdf_fit::plot::{Figure, PlotError};
-use brdf_fit::read::{ReadError, ReadOptions, Scan};
+use brdf_fit::read::{LazyScan, ReadError, ReadOptions};
 use brdf_fit::report::Document;
 use brdf_fit::tradeoff::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
 use brdf_fit::tradeoff::fitting::{FitTrade, trade_fits, write_fit_trades};
@@ -281,7 +281,7 @@ impl Evaluation {
 fn compare_fits(fitting: &Fitting) -> Outcome {
     fitting.outputs.check(Some(&fitting.file))?;
     let read = |error: ReadError| vec![error.to_string()];
-    let scans = Scan::of_file(&fitting.file, &ReadOptions::default()).map_err(read)?;
+    let scans = LazyScan::open(&fitting.file, &ReadOptions::default()).map_err(read)?;
     let options = FitOptions {
         model: fitting.model,
         refractive_index: fitting.n.clone(),

@@ -49,7 +49,7 @@ pub(super) fn write(
 }
 
 fn write_table(fits: [&Fitted; 3], writer: &mut dyn Write) -> io::Result<()> {
-    let bins = Bins::USUAL;
+    let bins = Bins::STANDARD;
     for count in [bins.theta_h, bins.theta_d, bins.phi_d] {
         let count = i32::try_from(count).map_err(io::Error::other)?;
         writer.write_all(&count.to_le_bytes())?;
@@ -69,7 +69,7 @@ fn write_table(fits: [&Fitted; 3], writer: &mut dyn Write) -> io::Result<()> {
 /// The bytes of the bins of one `theta_h`.
 fn slab(bins: Bins, i: usize, channel: Channel, brdf: &AnyBrdf) -> Vec<u8> {
     let cells = (0..bins.theta_d).flat_map(|j| (0..bins.phi_d).map(move |k| [i, j, k]));
-    let number = |bin| value(brdf, bins.middle(bin)?).map(|f| f / channel.scale());
+    let number = |bin| value(brdf, bins.centre(bin)?).map(|f| f / channel.scale());
     cells
         .flat_map(|bin| number(bin).unwrap_or(NO_VALUE).to_le_bytes())
         .collect()
@@ -102,11 +102,11 @@ impl LookupError {
 
 /// The errors at direction pairs. A bin without a value is read as 0.
 fn lookup_errors(brdf: &AnyBrdf, pair: impl Fn(u32) -> Option<[f64; 3]> + Sync) -> Vec<f64> {
-    let bins = Bins::USUAL;
+    let bins = Bins::STANDARD;
     let error = |number: u32| {
         let at = pair(number)?;
         let exact = value(brdf, at)?;
-        let middle = bins.middle(bins.bin_of(at));
+        let middle = bins.centre(bins.bin_of(at));
         let read = middle.and_then(|middle| value(brdf, middle)).unwrap_or(0.0);
         (exact > 0.0).then(|| (read / exact - 1.0).abs())
     };
@@ -128,7 +128,7 @@ fn direction_pair(number: u32) -> [f64; 3] {
 
 /// Psi, theta and phi in radians, even over the table; `None` beyond the limit.
 fn table_pair(number: u32) -> Option<[f64; 3]> {
-    let at = Bins::directions(even(number))?;
+    let at = Bins::angles_at(even(number))?;
     (at[0].max(at[1]) <= LIMIT_DEG.to_radians()).then_some(at)
 }
 
@@ -198,7 +198,9 @@ mod tests {
         for (channel, fit) in Channel::ALL.into_iter().zip(&fits) {
             let scan = table.channel(channel).unwrap();
             // Every bin above the surface, and no other has a value.
-            let above = (0..Bins::USUAL.count()).filter(|bin| above(*bin)).count();
+            let above = (0..Bins::STANDARD.count())
+                .filter(|bin| above(*bin))
+                .count();
             assert_eq!(scan.readings().len(), above);
             assert_eq!(scan.conversions.len(), 1, "{:?}", scan.conversions);
             for r in scan.readings() {
@@ -212,7 +214,7 @@ mod tests {
 
     fn above(bin: usize) -> bool {
         let (i, j, k) = (bin / 16200, bin / 180 % 90, bin % 180);
-        Bins::USUAL.middle([i, j, k]).is_some()
+        Bins::STANDARD.centre([i, j, k]).is_some()
     }
 
     #[test]
@@ -221,7 +223,7 @@ mod tests {
         let numbers = bytes[12..].as_chunks::<8>().0;
         for (bin, number) in numbers.iter().enumerate() {
             let number = f64::from_le_bytes(*number);
-            if above(bin % Bins::USUAL.count()) {
+            if above(bin % Bins::STANDARD.count()) {
                 assert!(number > 0.0, "{bin}: {number}");
             } else {
                 assert_eq!(number, -1.0, "{bin}");
@@ -251,8 +253,8 @@ mod tests {
             let pairs = [Some(direction_pair(number)), table_pair(number)];
             for at in pairs.into_iter().flatten() {
                 assert!(at[0].max(at[1]) <= LIMIT_DEG.to_radians());
-                let bin = Bins::USUAL.bin_of(at);
-                assert!(Bins::USUAL.middle(bin).is_some(), "{at:?}");
+                let bin = Bins::STANDARD.bin_of(at);
+                assert!(Bins::STANDARD.centre(bin).is_some(), "{at:?}");
             }
         }
     }

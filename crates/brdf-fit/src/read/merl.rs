@@ -109,7 +109,7 @@ pub struct Bins {
 
 impl Bins {
     /// Those of the database.
-    pub const USUAL: Self = Self {
+    pub const STANDARD: Self = Self {
         theta_h: 90,
         theta_d: 90,
         phi_d: 180,
@@ -177,8 +177,8 @@ impl Bins {
 
     /// The direction pair in the middle of a bin as psi, theta and phi in radians; `None` where one
     /// of them is not above the surface.
-    pub fn middle(self, [i, j, k]: [usize; 3]) -> Option<[f64; 3]> {
-        Self::directions([
+    pub fn centre(self, [i, j, k]: [usize; 3]) -> Option<[f64; 3]> {
+        Self::angles_at([
             middle_of(i, self.theta_h),
             middle_of(j, self.theta_d),
             middle_of(k, self.phi_d),
@@ -186,7 +186,7 @@ impl Bins {
     }
 
     /// The same at a place of the table, from 0 to 1 along each of its axes.
-    pub(crate) fn directions([root_h, part_d, part_phi]: [f64; 3]) -> Option<[f64; 3]> {
+    pub(crate) fn angles_at([root_h, part_d, part_phi]: [f64; 3]) -> Option<[f64; 3]> {
         Self::pair(half(root_h), difference(part_d), azimuth(part_phi))
     }
 
@@ -425,7 +425,7 @@ impl<R: Read + Seek> Table<R> {
     /// directions lie in. For pictures, which show incidences.
     ///
     /// Errors: as of [`channel`](Self::channel).
-    pub fn scan(&mut self, channel: Channel) -> Result<Measurements, ReadError> {
+    pub fn in_plane_scan(&mut self, channel: Channel) -> Result<Measurements, ReadError> {
         let values = self.values(channel, 0..self.bins.theta_h)?;
         let (values, _) = values.as_chunks::<VALUE>();
         let mut readings = Vec::new();
@@ -653,7 +653,7 @@ mod tests {
         let expected = |bin: usize| (1000 + bin) as f64 * (1.15 / 1500.0);
         let mut bins = (0..SMALL.count()).filter_map(|bin| {
             let (i, rest) = (bin / 40, bin % 40);
-            Some((bin, SMALL.middle([i, rest / 8, rest % 8])?))
+            Some((bin, SMALL.centre([i, rest / 8, rest % 8])?))
         });
         for reading in green.readings() {
             let (bin, angles) = bins.next().unwrap();
@@ -670,7 +670,7 @@ mod tests {
     #[test]
     fn the_angles_of_a_bin_are_those_of_its_half_vector() {
         for (i, j, k) in [(0, 0, 0), (2, 1, 3), (3, 2, 7)] {
-            let [psi, theta, phi] = SMALL.middle([i, j, k]).unwrap();
+            let [psi, theta, phi] = SMALL.centre([i, j, k]).unwrap();
             let geometry = brdf_core::Geometry::new(psi, theta, phi).unwrap();
             let part = |index: usize, bins: usize| (index as f64 + 0.5) / bins as f64;
             let theta_h = FRAC_PI_2 * part(i, SMALL.theta_h).powi(2);
@@ -750,8 +750,8 @@ mod tests {
 
     #[test]
     fn a_scan_meets_the_bins_of_its_directions() {
-        let mut table = Table::new(Cursor::new(bytes(Bins::USUAL)), "x").unwrap();
-        let scan = table.scan(Channel::Red).unwrap();
+        let mut table = Table::new(Cursor::new(bytes(Bins::STANDARD)), "x").unwrap();
+        let scan = table.in_plane_scan(Channel::Red).unwrap();
         assert_eq!(
             (scan.readings().len(), scan.incidences().len()),
             (9 * 69, 9)
@@ -767,8 +767,8 @@ mod tests {
     proptest! {
         #[test]
         fn the_middle_of_a_bin_lies_in_it(i in 0_usize..90, j in 0_usize..90, k in 0_usize..180) {
-            if let Some(angles) = Bins::USUAL.middle([i, j, k]) {
-                prop_assert_eq!(Bins::USUAL.bin_of(angles), [i, j, k]);
+            if let Some(angles) = Bins::STANDARD.centre([i, j, k]) {
+                prop_assert_eq!(Bins::STANDARD.bin_of(angles), [i, j, k]);
             }
         }
 

@@ -9,15 +9,15 @@ mod detect;
 mod error;
 mod fields;
 pub mod goniometer;
+mod lazy_scan;
 pub mod merl;
 mod options;
-mod scan;
 mod text;
 pub mod zemax;
 
 pub use error::ReadError;
+pub use lazy_scan::LazyScan;
 pub use options::ReadOptions;
-pub use scan::Scan;
 
 use std::fs::File;
 use std::io::{Cursor, Read as _};
@@ -28,7 +28,7 @@ use crate::scan::{Convention, Format, Measurements};
 impl Measurements {
     /// Reads a file of any [`Format`].
     ///
-    /// All readings of a MERL table take 210 MB; [`Scan::of_file`] reads one channel at a time.
+    /// All readings of a MERL table take 210 MB; [`LazyScan::open`] reads one channel at a time.
     ///
     /// Errors name the file, and where they can the line, the column and the value, and say what
     /// was expected.

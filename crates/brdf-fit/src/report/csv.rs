@@ -8,7 +8,7 @@ use super::Report;
 use crate::fit::Fit;
 use crate::format::in_degrees;
 use crate::plot::theory_curves;
-use crate::read::Scan;
+use crate::read::LazyScan;
 use crate::scan::Measurements;
 
 /// The header of the CSV for scripts. E is in percent, each over its own stage's readings.
@@ -125,7 +125,7 @@ pub const THEORY_COLUMNS: [&str; 8] = [
 /// initial values, of stage 1 and of the fit, at every reading, in the model's convention. The
 /// readings of a table are read once more.
 pub fn write_curves<'a>(
-    fits: impl Iterator<Item = (&'a Scan, &'a Fit)>,
+    fits: impl Iterator<Item = (&'a LazyScan, &'a Fit)>,
     writer: impl io::Write,
 ) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{Report, html};
 use crate::output::{WriteError, write_file};
 use crate::plot::{Figure, PlotError, figures, write_figures};
-use crate::read::{ReadError, Scan};
+use crate::read::{LazyScan, ReadError};
 use crate::scan::Measurements;
 
 /// The name of the page.
@@ -32,7 +32,7 @@ pub enum FolderError {
 /// Draws the pictures of each fit, as SVG and PNG named after its file and wavelength, and writes
 /// `report.html` with all of them and the tables. Returns the files that were written.
 pub fn write_folder(
-    reports: &[(&Scan, &Report)],
+    reports: &[(&LazyScan, &Report)],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, FolderError> {
     let mut taken = HashSet::new();
@@ -44,7 +44,7 @@ pub fn write_folder(
         .par_iter()
         .zip(&prefixes)
         .map(|((scan, report), prefix)| {
-            let figures = figures_of(&*scan.pictured()?, report)?;
+            let figures = figures_of(&*scan.plotted()?, report)?;
             let files = write_figures(&figures, folder, prefix)?;
             Ok((figures, files))
         })

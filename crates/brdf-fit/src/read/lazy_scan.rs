@@ -4,8 +4,10 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use super::detect;
+use super::error::ReadError;
 use super::merl::{self, Channel, Table};
-use super::{ReadError, ReadOptions};
+use super::options::ReadOptions;
 use crate::scan::Measurements;
 
 /// The readings of one wavelength of a file, which are read when they are needed.
@@ -34,7 +36,7 @@ impl LazyScan {
     /// returned by [`measurements`](Self::measurements) and [`plotted`](Self::plotted) instead.
     pub fn open(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Vec<Self>, ReadError> {
         let path = path.as_ref();
-        if !merl::is_table(path, options) {
+        if !detect::is_merl_file(path, options) {
             let scans = Measurements::read(path, options)?.by_wavelength();
             return Ok(scans.into_iter().map(Self::Loaded).collect());
         }
@@ -43,7 +45,7 @@ impl LazyScan {
             let channels = merl::channels(table, options)?;
             return channels.map(|channel| Ok(Self::Loaded(channel?))).collect();
         }
-        table.check(options)?;
+        table.check_options(options)?;
         let channels = Channel::ALL.into_iter().rev();
         let scan = |channel| Self::MerlChannel {
             path: path.to_owned(),

@@ -59,9 +59,9 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             Format::Zemax,
             [].as_slice(),
             [
-                "scatter angles about the specular ray are turned to view angles",
+                "scatter angles about the specular ray are converted to view angles",
                 "27 readings at or beyond 90 deg from the normal are left out",
-                "16 readings that repeat one of the same direction are left out",
+                "16 readings that repeat the value of the same direction are left out",
             ],
         ),
         (
@@ -71,7 +71,7 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             [
                 "2 rotations of the sample are read as one isotropic sample",
                 "8 readings at or beyond 90 deg from the normal are left out",
-                "40 readings that repeat one of the same direction are left out",
+                "40 readings that repeat the value of the same direction are left out",
             ],
         ),
         (
@@ -79,8 +79,8 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             Format::Astm,
             &["--n", "1.62"],
             [
-                "angles are in degrees, as the file says",
-                "azimuth 0 is the forward side, turned by 180 deg",
+                "angles are in degrees, as the file states",
+                "azimuth 0 is the forward side: azimuths are rotated by 180 deg",
                 "4 readings at or beyond 90 deg from the normal are left out",
             ],
         ),
@@ -201,7 +201,7 @@ fn wrong_files_are_refused_with_line_and_value() {
         "a.bsdf",
         &with("plane_symmetrical.bsdf", "\tBRDF", "\tBTDF"),
         &[],
-        ", line 7: ScatterType BTDF: the model is of reflection, expected BRDF",
+        ", line 7: ScatterType BTDF: the model describes reflection, expected BRDF",
     );
     assert_refused(
         "a.bsdf",
@@ -213,13 +213,13 @@ fn wrong_files_are_refused_with_line_and_value() {
         "a.astm",
         &with("beam.astm", "DATA_POINTS 68", "DATA_POINTS 69"),
         &[],
-        ", line 6: 68 rows follow: expected 69, as the header says",
+        ", line 6: 68 rows follow: expected 69, as the header states",
     );
     assert_refused(
         "a.astm",
         &with("cornell.astm", "400nm", "theta_i"),
         &[],
-        ", line 5: column theta_i stands there twice",
+        ", line 5: column theta_i is given twice",
     );
     assert_refused(
         "a.txt",
@@ -285,15 +285,15 @@ fn a_format_is_forced_and_its_sides_are_its_own() {
         "a.txt",
         &content,
         &["--format", "astm"],
-        ": has no line VARS: expected one with theta_i, theta_s and what was measured",
+        ": has no line VARS: expected one with theta_i, theta_s and a column of values",
     );
     let zemax = fs::read_to_string(file("plane_symmetrical.bsdf")).unwrap();
     assert_refused(
         "a.bsdf",
         &zemax,
         &["--phi-zero", "forward"],
-        ": its sides cannot be chosen: the format counts from the specular ray, and azimuth 0 points \
-         to the normal",
+        ": the angular convention cannot be chosen: the format measures angles from the specular ray, \
+         with azimuth 0 towards the normal",
     );
     let unknown = run_fit(["a.csv", "--format", "merl-text"]);
     assert_eq!(unknown.status.code(), Some(BAD));

@@ -170,10 +170,10 @@ fn one_fit_is_exported_as_grey() {
 fn the_report_says_how_a_table_is_read() {
     let printed = succeeded(&fit(&coloured().path, &["--sample", "500"]));
     for said in [
-        "  input: MERL table, red taken for 0.611 um: f_r in the middle of each bin of theta_h, theta_d, \
+        "  read: MERL table, red assigned to 0.611 um: f_r at the centre of each bin of theta_h, theta_d, \
          phi_d\n",
-        "MERL table, blue taken for 0.464 um",
-        "  input: 500 of 1096216 readings, evenly over theta_h, theta_d and phi_d\n",
+        "MERL table, blue assigned to 0.464 um",
+        "  read: 500 of 1096216 readings, evenly over theta_h, theta_d and phi_d\n",
     ] {
         assert!(printed.contains(said), "{printed}");
     }
@@ -223,7 +223,7 @@ fn small() -> Vec<u8> {
     let mut bytes = header([6, 5, 8]);
     for (channel, brdf) in Channel::ALL.into_iter().zip(channels()) {
         for bin in 0..SMALL.count() {
-            let middle = SMALL.middle([bin / 40, bin / 8 % 5, bin % 8]);
+            let middle = SMALL.centre([bin / 40, bin / 8 % 5, bin % 8]);
             let value = middle.map_or(-1.0, |at| value(&brdf, at) / channel.scale());
             bytes.extend(value.to_le_bytes());
         }
@@ -290,7 +290,7 @@ fn the_sides_of_a_table_are_its_own() {
         let output = fit(&path, &[option, "forward"]);
         assert_eq!(output.status.code(), Some(BAD));
         let expected = format!(
-            "error: {}: its sides cannot be chosen: a MERL table has angles about the half vector\n",
+            "error: {}: the angular convention cannot be chosen: a MERL table has angles about the half vector\n",
             path.display()
         );
         assert_eq!(text(&output.stderr), expected);
@@ -333,7 +333,7 @@ fn damaged_tables_are_told_with_their_numbers_and_nothing_is_taken_for_their_hea
     let short = "has 11 bytes: expected a MERL table, which begins with three numbers of bins in 12 \
                   bytes";
     let size = "bins of three channels are";
-    let positive = "expected three positive numbers, of a MERL table 90 x 90 x 180";
+    let positive = "expected three positive numbers, such as 90 x 90 x 180 of the MERL database";
     let finite = "is not a finite number: expected f_r, or a negative number for a bin that was not \
                   measured";
     for (bytes, message) in [
@@ -364,7 +364,7 @@ fn damaged_tables_are_told_with_their_numbers_and_nothing_is_taken_for_their_hea
         ),
         (
             change(0, &header([i32::MAX, 90, 180])),
-            "2147483647 x 90 x 180 bins: expected no more than 16777216 in a channel".to_owned(),
+            "2147483647 x 90 x 180 bins: expected at most 16777216 in a channel".to_owned(),
         ),
         (
             change(0, &big_endian),
@@ -386,7 +386,7 @@ fn damaged_tables_are_told_with_their_numbers_and_nothing_is_taken_for_their_hea
     fs::write(&path, header([30_000, 30_000, 1])).unwrap();
     let file = fs::File::options().write(true).open(&path).unwrap();
     if file.set_len(12 + 3 * 8 * 900_000_000).is_ok() {
-        refused("30000 x 30000 x 1 bins: expected no more than 16777216 in a channel");
+        refused("30000 x 30000 x 1 bins: expected at most 16777216 in a channel");
     }
 }
 
@@ -463,7 +463,7 @@ fn mitsuba_finds_the_values_of_the_core_in_the_bins_of_its_own_coordinates() {
         d.iter()
             .flat_map(move |&j| p.iter().map(move |&k| [i, j, k]))
     });
-    let middles = all.filter_map(|bin| Bins::USUAL.middle(bin));
+    let middles = all.filter_map(|bin| Bins::STANDARD.centre(bin));
     let at: Vec<_> = middles.filter(|at| at[0].max(at[1]) < 1.52).collect();
     assert!(at.len() > 1000);
     let Some(found) = found("mitsuba", "merl_in_mitsuba.py", Some(&bins), &at) else {
@@ -490,12 +490,12 @@ fn a_lookup_as_in_the_reference_code_finds_f_r_within_the_error_that_was_said() 
     };
     let bins: Vec<[usize; 3]> = serde_json::from_value(found["bins"].clone()).unwrap();
     for (&bin, &at) in bins.iter().zip(&at) {
-        assert_eq!(bin, Bins::USUAL.bin_of(at), "{at:?}");
+        assert_eq!(bin, Bins::STANDARD.bin_of(at), "{at:?}");
     }
     for (c, brdf) in channels().iter().enumerate() {
         let values = numbers(&found["channels"][c]);
         for (found, &bin) in values.iter().zip(&bins) {
-            let middle = value(brdf, Bins::USUAL.middle(bin).unwrap());
+            let middle = value(brdf, Bins::STANDARD.centre(bin).unwrap());
             assert!((found / middle - 1.0).abs() < 4.0 * f64::EPSILON, "{bin:?}");
         }
         let errors = values

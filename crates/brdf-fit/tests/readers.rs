@@ -1,4 +1,5 @@
-//! Readers of every format on anything at all: an answer or an error, and no end of the program.
+//! Every reader on arbitrary input: it returns readings in the model's domain or an error, and does not
+//! panic.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +9,7 @@ use brdf_fit::read::ReadOptions;
 use brdf_fit::scan::{Format, Side};
 use proptest::prelude::*;
 
-/// Reads as every format, and as what the content seems to be.
+/// Reads in every format, and in the format that is detected.
 fn read_as_all(bytes: &[u8]) {
     let forced = Format::NAMED.map(|(format, _)| Some(format));
     for format in forced.into_iter().chain([None]) {
@@ -25,7 +26,7 @@ fn read_as_all(bytes: &[u8]) {
     }
 }
 
-/// What was read is in the model's domain.
+/// Checks that the readings are in the model's domain.
 fn check(scan: &Measurements) {
     assert!(!scan.readings().is_empty());
     for reading in scan.readings() {
@@ -48,14 +49,14 @@ fn valid_files() -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn the_valid_files_are_valid() {
+fn valid_files_are_read() {
     for file in valid_files() {
         check(&Measurements::from_bytes("a", &file, &ReadOptions::default()).unwrap());
         read_as_all(&file);
     }
 }
 
-/// What a word of a file may become.
+/// A word that may replace a part of a file.
 fn word() -> impl Strategy<Value = Vec<u8>> {
     let known = [
         "",
@@ -112,13 +113,13 @@ proptest! {
     }
 
     #[test]
-    fn files_with_something_else_in_them_are_read_or_refused(
+    fn damaged_files_are_read_or_refused(
         file in 0..valid_files().len(),
         changes in proptest::collection::vec((any::<proptest::sample::Index>(), 0..40_usize, word()), 1..4),
         end in proptest::option::of(any::<proptest::sample::Index>()),
     ) {
         let mut bytes = valid_files().swap_remove(file);
-        // The beginning has the headers.
+        // Changes are made near the beginning, where the headers are.
         for (at, length, word) in changes {
             let from = at.index(bytes.len().clamp(1, 1500)).min(bytes.len());
             let to = (from + length).min(bytes.len());

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use brdf_fit::Measurements;
-use brdf_fit::read::{ReadError, ReadOptions, Scan as FileScan};
+use brdf_fit::read::{LazyScan, ReadError, ReadOptions};
 use brdf_fit::report::{Document, Report};
 use brdf_fit::scan::{Convention, Side};
 
@@ -71,9 +71,9 @@ fn as_before(report: &Report) -> ReadOptions {
 /// The scans of a file; of a table, which has no incidences, as a goniometer would have taken them.
 fn read_scan(path: &Path, options: &ReadOptions) -> Result<Vec<Scan>, String> {
     let words = |error: ReadError| error.to_string();
-    let scans = FileScan::of_file(path, options).map_err(words)?;
-    let pictured = scans.iter().map(FileScan::pictured);
-    pictured
+    let scans = LazyScan::open(path, options).map_err(words)?;
+    let plotted = scans.iter().map(LazyScan::plotted);
+    plotted
         .map(|scan| Ok(Scan::new(scan.map_err(words)?.into_owned())))
         .collect()
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::failure::Failure;
 use crate::output::{WriteError, check_outputs, write_file};
-use crate::read::{ReadError, ReadOptions, Scan};
+use crate::read::{LazyScan, ReadError, ReadOptions};
 use crate::report::{Document, DocumentError};
 use crate::scan::Measurements;
 
@@ -96,12 +96,16 @@ pub(super) fn check_folder((option, path): Named<'_>) -> Result<(), StreamError>
 }
 
 /// The scans of a file, or of standard input.
-pub(super) fn scans(path: &Path, options: &ReadOptions) -> Result<Vec<Scan>, ReadError> {
+pub(super) fn scans(path: &Path, options: &ReadOptions) -> Result<Vec<LazyScan>, ReadError> {
     if !is_stream(path) {
-        return Scan::of_file(path, options);
+        return LazyScan::open(path, options);
     }
     let all = Measurements::from_stream(INPUT, io::stdin().lock(), options)?;
-    Ok(all.by_wavelength().into_iter().map(Scan::Read).collect())
+    Ok(all
+        .by_wavelength()
+        .into_iter()
+        .map(LazyScan::Loaded)
+        .collect())
 }
 
 /// The document of a file, or of standard input.

@@ -37,7 +37,7 @@ pub(super) fn write(
 }
 
 fn write_table(fits: [&Fitted; 3], writer: &mut dyn Write) -> io::Result<()> {
-    let bins = Bins::USUAL;
+    let bins = Bins::STANDARD;
     for count in [bins.theta_h, bins.theta_d, bins.phi_d] {
         let count = i32::try_from(count).map_err(io::Error::other)?;
         writer.write_all(&count.to_le_bytes())?;
@@ -57,7 +57,7 @@ fn write_table(fits: [&Fitted; 3], writer: &mut dyn Write) -> io::Result<()> {
 /// The bytes of the bins of one channel with the same `theta_h`.
 fn slab(bins: Bins, i: usize, channel: Channel, brdf: &AnyBrdf) -> Vec<u8> {
     let cells = (0..bins.theta_d).flat_map(|j| (0..bins.phi_d).map(move |k| [i, j, k]));
-    let number = |bin| value(brdf, bins.middle(bin)?).map(|f| f / channel.scale());
+    let number = |bin| value(brdf, bins.centre(bin)?).map(|f| f / channel.scale());
     cells
         .flat_map(|bin| number(bin).unwrap_or(NO_VALUE).to_le_bytes())
         .collect()
@@ -97,7 +97,9 @@ mod tests {
         for (channel, fit) in Channel::ALL.into_iter().zip(&fits) {
             let scan = table.channel(channel).unwrap();
             // Every bin above the surface has a value, and no other bin.
-            let above = (0..Bins::USUAL.count()).filter(|bin| above(*bin)).count();
+            let above = (0..Bins::STANDARD.count())
+                .filter(|bin| above(*bin))
+                .count();
             assert_eq!(scan.readings().len(), above);
             assert_eq!(scan.conversions.len(), 1, "{:?}", scan.conversions);
             for r in scan.readings() {
@@ -111,7 +113,7 @@ mod tests {
 
     fn above(bin: usize) -> bool {
         let (i, j, k) = (bin / 16200, bin / 180 % 90, bin % 180);
-        Bins::USUAL.middle([i, j, k]).is_some()
+        Bins::STANDARD.centre([i, j, k]).is_some()
     }
 
     #[test]
@@ -120,7 +122,7 @@ mod tests {
         let numbers = bytes[12..].as_chunks::<8>().0;
         for (bin, number) in numbers.iter().enumerate() {
             let number = f64::from_le_bytes(*number);
-            if above(bin % Bins::USUAL.count()) {
+            if above(bin % Bins::STANDARD.count()) {
                 assert!(number > 0.0, "{bin}: {number}");
             } else {
                 assert_eq!(number, -1.0, "{bin}");

@@ -52,11 +52,11 @@ impl LookupError {
 /// The relative errors at the numbered direction pairs. A bin without a value is read as 0; pairs
 /// at which f_r is 0 are left out.
 fn lookup_errors(brdf: &AnyBrdf, pair: impl Fn(u32) -> Option<[f64; 3]> + Sync) -> Vec<f64> {
-    let bins = Bins::USUAL;
+    let bins = Bins::STANDARD;
     let error = |number: u32| {
         let at = pair(number)?;
         let exact = value(brdf, at)?;
-        let middle = bins.middle(bins.bin_of(at));
+        let middle = bins.centre(bins.bin_of(at));
         let read = middle.and_then(|middle| value(brdf, middle)).unwrap_or(0.0);
         (exact > 0.0).then(|| (read / exact - 1.0).abs())
     };
@@ -79,7 +79,7 @@ fn pair_by_angles(number: u32) -> [f64; 3] {
 /// A pair as psi, theta and phi in radians, distributed evenly over the axes of the table; `None`
 /// beyond [`MAX_ZENITH_DEG`].
 fn pair_by_bins(number: u32) -> Option<[f64; 3]> {
-    let at = Bins::directions(quasirandom(number))?;
+    let at = Bins::angles_at(quasirandom(number))?;
     (at[0].max(at[1]) <= MAX_ZENITH_DEG.to_radians()).then_some(at)
 }
 
@@ -134,8 +134,8 @@ mod tests {
             let pairs = [Some(pair_by_angles(number)), pair_by_bins(number)];
             for at in pairs.into_iter().flatten() {
                 assert!(at[0].max(at[1]) <= MAX_ZENITH_DEG.to_radians());
-                let bin = Bins::USUAL.bin_of(at);
-                assert!(Bins::USUAL.middle(bin).is_some(), "{at:?}");
+                let bin = Bins::STANDARD.bin_of(at);
+                assert!(Bins::STANDARD.centre(bin).is_some(), "{at:?}");
             }
         }
     }

@@ -189,7 +189,7 @@ mod tests {
     fn table() -> Measurements {
         let bins = (0..BINS.count()).map(|bin| [bin / 240, bin / 24 % 10, bin % 24]);
         let readings = bins.filter_map(|bin| {
-            let [psi, theta, phi] = BINS.middle(bin)?;
+            let [psi, theta, phi] = BINS.centre(bin)?;
             let [i, j, k] = bin.map(|x| x as f64);
             Some(Measurement {
                 wavelength_um: None,

@@ -11,7 +11,7 @@ use super::figure::Figure;
 use super::figures::figures;
 use super::write::write_figures;
 use crate::output::{WriteError, write_file};
-use crate::read::{ReadError, Scan};
+use crate::read::{LazyScan, ReadError};
 use crate::report::{Picture, Report, html};
 use crate::scan::Measurements;
 
@@ -50,7 +50,7 @@ impl<'a> From<&'a Figure> for Picture<'a> {
 /// The readings of a table cannot be read again, a figure cannot be drawn, or a file cannot be
 /// written. Files written before the error remain.
 pub fn write_folder(
-    reports: &[(&Scan, &Report)],
+    reports: &[(&LazyScan, &Report)],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, FolderError> {
     let mut taken = HashSet::new();
@@ -62,7 +62,7 @@ pub fn write_folder(
         .par_iter()
         .zip(&prefixes)
         .map(|((scan, report), prefix)| {
-            let figures = report_figures(&*scan.pictured()?, report)?;
+            let figures = report_figures(&*scan.plotted()?, report)?;
             let files = write_figures(&figures, folder, prefix)?;
             Ok((figures, files))
         })

@@ -1,4 +1,4 @@
-//! Two directions that a file gives by zenith angles and azimuths.
+//! Pairs of directions that a file gives by zenith angles and azimuths.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ pub(super) enum AngleUnit {
 }
 
 impl AngleUnit {
-    /// Half a turn in this unit.
+    /// The angle of 180 deg in this unit.
     pub(super) fn half_turn(self) -> f64 {
         match self {
             Self::Degrees => 180.0,
@@ -26,8 +26,9 @@ impl AngleUnit {
     }
 }
 
-/// The angles of a reading in a file's unit: zenith angles from the normal, negative ones on the
-/// other side of it, and azimuths in which 0 and half a turn are opposite sides.
+/// The directions of source (i) and view (s) of a reading, in the file's unit: zenith angles theta
+/// from the normal, and azimuths phi about it. A negative zenith angle is a positive one at the opposite
+/// azimuth, phi + 180 deg. Equal azimuths are the same side of the normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TwoDirections {
     pub(super) theta_i: f64,
@@ -37,20 +38,25 @@ pub(super) struct TwoDirections {
 }
 
 impl TwoDirections {
-    /// psi, theta and phi of the model in radians: phi is phi_s - phi_i, the source at 0. `None` where
-    /// a direction is at or beyond 90 deg from the normal.
+    /// psi, theta and phi in the model's convention, in radians:
+    ///
+    /// ```text
+    /// psi = |theta_i|,  theta = theta_s,  phi = phi_s - phi_i (+ 180 deg where theta_i < 0)
+    /// ```
+    ///
+    /// `None` where a direction is at or beyond 90 deg from the normal.
     pub(super) fn in_model(self, unit: AngleUnit) -> Option<(f64, f64, f64)> {
         let quarter = unit.half_turn() / 2.0;
         let inside = |angle: f64| angle.abs() < quarter;
         if !inside(self.theta_i) || !inside(self.theta_s) {
             return None;
         }
-        let across = if self.theta_i < 0.0 {
+        let opposite = if self.theta_i < 0.0 {
             unit.half_turn()
         } else {
             0.0
         };
-        let phi = self.phi_s - self.phi_i + across;
+        let phi = self.phi_s - self.phi_i + opposite;
         let (psi, theta) = (self.theta_i.abs(), self.theta_s);
         let inside = |angle: f64| angle.abs() < PI / 2.0;
         let (psi, theta) = (unit.radians(psi), unit.radians(theta));
@@ -73,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn the_azimuth_counts_from_the_source() {
+    fn the_azimuth_is_counted_from_the_source() {
         let rad = f64::to_radians;
         let expected = Some((rad(30.0), rad(40.0), rad(180.0)));
         assert_eq!(model(30.0, 0.0, 40.0, 180.0), expected);
@@ -84,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn the_horizon_and_what_is_beyond_it_is_none() {
+    fn directions_at_or_beyond_the_horizon_are_none() {
         assert_eq!(model(90.0, 0.0, 0.0, 0.0), None);
         assert_eq!(model(0.0, 0.0, -90.0, 0.0), None);
         assert_eq!(model(0.0, 0.0, 120.0, 0.0), None);

@@ -1,5 +1,6 @@
-//! Reflectance factors as the Black Lab gonioradiometer's processing writes them: words, then a
-//! line of column names, then a row for each pair of directions with a value for each wavelength.
+//! Reflectance factors as the processing of the Black Lab gonioradiometer writes them: a few lines of
+//! text, a line of column names, and a row for each pair of directions with a value for each
+//! wavelength.
 //!
 //! ```text
 //! BRF Values
@@ -9,30 +10,40 @@
 //!  10.000   0.000  75.000 180.000 0.033376        0.034890
 //! ```
 //!
-//! (Numbers made up.) Zenith angles and azimuths are in degrees; the azimuth is that of the
-//! direction as seen from the sample, so `view_a` = `src_a` looks back at the source and a
-//! difference of 180 deg is the forward side. `BRF Values` are reflectance factors, pi times the
-//! BRDF: they are relative to a standard whose own factors (0/45, traceable to NIST) the
-//! processing has already multiplied by. `BRDF Values` would be the BRDF itself.
+//! (The numbers are made up.) `src_z`, `view_z` are zenith angles and `src_a`, `view_a` azimuths of
+//! source and view in degrees; wavelengths are in nm. An azimuth is that of the direction as seen from
+//! the sample: the model's phi is `view_a` - `src_a`, 0 towards the source and 180 deg on the forward
+//! side. The first line names the quantity:
+//!
+//! | first line | values | conversion |
+//! |---|---|---|
+//! | `BRF Values` | reflectance factors | f_r = value / pi in 1/sr |
+//! | `BRDF Values` | f_r in 1/sr | none |
+//!
+//! The reflectance factors are relative to a standard, by whose own factors (0/45, traceable to NIST)
+//! the processing has already multiplied.
 //!
 //! Source: the files below `data/raw/blacklab` of github.com/ua-loft/bsdf-tools (University of
-//! Arizona LOFT, commit b572b087765c) and that project's own reader, which divides by pi; the sense
-//! of the azimuth shows in them, as the lobe of a coating stands at a difference of 180 deg.
+//! Arizona LOFT, commit b572b087765c) and that project's own reader, which divides by pi. The sense of
+//! the azimuth follows from these files: the specular lobe of a coating is at a difference of 180 deg.
 
 use super::angles::{AngleUnit, TwoDirections};
-use super::text::{
-    BEYOND_HORIZON, Field, Quantity, Text, is_angle, is_reading, left_out, micrometres, words,
-};
-use super::{ReadError, ReadOptions};
-use crate::scan::{Convention, Format};
-use crate::scan::{Measurement, Measurements, Metadata};
+use super::conversion::{BEYOND_HORIZON, Quantity, left_out};
+use super::error::ReadError;
+use super::number::{Field, is_angle, is_reading, micrometres};
+use super::options::ReadOptions;
+use super::text::{Text, words};
+use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
 
 const ANGLES: [&str; 4] = ["src_z", "src_a", "view_z", "view_a"];
 
+/// # Errors
+///
+/// The text is not such a file, or has no readings above the surface, or `options` set another angular
+/// convention.
 pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
-    let why =
-        "src_a and view_a are azimuths of one circle, and a difference of 0 is the source's side";
-    let convention = options.fixed(text.path, Convention::default(), why)?;
+    let why = "src_a and view_a are azimuths about the normal, and a difference of 0 is the source's side";
+    let convention = options.fixed_convention(text.path, Convention::default(), why)?;
     let mut lines = text.checked_lines();
     let header = Header::read(&text, &mut lines)?;
     let mut readings = Vec::new();
@@ -45,7 +56,7 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
         beyond += header.add_row(&text, number, line, &mut readings)?;
     }
     if readings.is_empty() {
-        let message = "no readings follow the names of the columns";
+        let message = "no readings follow the column names";
         return Err(text.line_error(header.number, message));
     }
     let mut conversions: Vec<String> = header.quantity.conversion().into_iter().collect();
@@ -61,13 +72,13 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
     })
 }
 
-/// What stands before the rows.
+/// The lines before the rows.
 struct Header {
     /// The number of the line that names the columns.
     number: u64,
     metadata: Metadata,
     quantity: Quantity,
-    /// Of each column behind the angles: its name, and in micrometres.
+    /// The name and the wavelength in micrometres of each column after the angles.
     wavelengths: Vec<(String, f64)>,
 }
 
@@ -76,25 +87,26 @@ impl Header {
         text: &Text<'_>,
         lines: &mut impl Iterator<Item = Result<(u64, &'a [u8]), ReadError>>,
     ) -> Result<Self, ReadError> {
-        let mut said: Vec<String> = Vec::new();
+        let mut before: Vec<String> = Vec::new();
         for line in lines {
             let (number, line) = line?;
             let names: Vec<&[u8]> = words(line).collect();
             if names.first().is_some_and(|name| *name == b"src_z") {
                 return Ok(Self {
                     number,
-                    quantity: quantity(text, number, &said)?,
-                    metadata: metadata(said),
+                    quantity: quantity(text, number, &before)?,
+                    metadata: metadata(before),
                     wavelengths: wavelengths(text, number, &names)?,
                 });
             }
-            said.push(String::from_utf8_lossy(line).trim().to_owned());
+            before.push(String::from_utf8_lossy(line).trim().to_owned());
         }
-        Err(text
-            .error("has no line of columns: expected src_z, src_a, view_z, view_a and wavelengths"))
+        Err(text.error(
+            "has no line of column names: expected src_z, src_a, view_z, view_a and wavelengths",
+        ))
     }
 
-    /// Adds the readings of a row; how many are beyond the horizon instead.
+    /// Adds the readings of a row. Returns how many are left out because they are beyond the horizon.
     fn add_row(
         &self,
         text: &Text<'_>,
@@ -105,7 +117,7 @@ impl Header {
         let fields: Vec<&[u8]> = words(line).collect();
         let (found, expected) = (fields.len(), ANGLES.len() + self.wavelengths.len());
         if found != expected {
-            let message = format!("{found} fields: expected {expected}, as there are columns");
+            let message = format!("{found} fields: expected {expected}, one for each column");
             return Err(text.line_error(number, message));
         }
         let (angles, values) = fields.split_at(ANGLES.len());
@@ -138,28 +150,29 @@ impl Header {
     }
 }
 
-/// What the first line says that the values are.
-fn quantity(text: &Text<'_>, header: u64, said: &[String]) -> Result<Quantity, ReadError> {
-    let title = said.iter().find(|line| !line.is_empty());
+/// The quantity that the first line names.
+fn quantity(text: &Text<'_>, header: u64, before: &[String]) -> Result<Quantity, ReadError> {
+    let title = before.iter().find(|line| !line.is_empty());
     let mut words = title.map_or("", String::as_str).split_whitespace();
     match words.next() {
         Some("BRF") => Ok(Quantity::ReflectanceFactor),
         Some("BRDF") => Ok(Quantity::Brdf),
         _ => {
-            let message = "nothing before the columns says what the values are: expected a first line \"BRF Values\"";
+            let message = "the quantity of the values is not given before the column names: expected \
+                           a first line \"BRF Values\" or \"BRDF Values\"";
             Err(text.line_error(header, message))
         }
     }
 }
 
-/// The sample stands on the second line, by itself; the rest is kept as it is.
-fn metadata(said: Vec<String>) -> Metadata {
-    let said = said.into_iter().filter(|line| !line.is_empty());
+/// The lines before the column names: the quantity, the name of the sample, and notes.
+fn metadata(before: Vec<String>) -> Metadata {
+    let lines = before.into_iter().filter(|line| !line.is_empty());
     let keys = ["values", "sample"]
         .into_iter()
         .chain(std::iter::repeat("note"));
     Metadata(
-        keys.zip(said)
+        keys.zip(lines)
             .map(|(key, line)| (key.to_owned(), line))
             .collect(),
     )
@@ -182,7 +195,7 @@ fn wavelengths(
         let wavelength_um = micrometres(label.strip_suffix(b"nm").unwrap_or(label));
         let found = wavelength_um.map(|um| (name, um));
         found.ok_or_else(|| {
-            let message = "is not a wavelength: expected one such as 630.79nm".to_owned();
+            let message = "is not a wavelength: expected one such as 630.79nm";
             text.value_error(number, "wavelength", label, message)
         })
     };
@@ -232,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn readings_at_the_horizon_are_counted() {
+    fn readings_at_or_beyond_the_horizon_are_counted() {
         let more = format!("{TWO}20 0 90 180 1 1\n95 0 20 180 1 1\n");
         let scan = read_with(&more, &ReadOptions::default()).unwrap();
         assert_eq!(scan.readings().len(), 4);
@@ -244,7 +257,7 @@ mod tests {
         let row = |row: &str| error(&format!("{TWO}{row}\n"));
         assert_eq!(
             row("1 2 3 4 5"),
-            "a.txt, line 7: 5 fields: expected 6, as there are columns"
+            "a.txt, line 7: 5 fields: expected 6, one for each column"
         );
         assert!(row("1 2 x 4 5 6").contains("line 7, column view_z: \"x\" is not a number"));
         assert!(row("1 2 3 4 5 nan").contains("column 852.23nm: \"nan\" is not a finite number"));
@@ -252,17 +265,20 @@ mod tests {
         assert!(error("src_z src_a view_z view_a 5nm\n").contains("\"BRF Values\""));
         assert!(error("BRF\nsrc_z src_a view_z view_a x\n").contains("such as 630.79nm"));
         assert!(error("BRF\nsrc_z src_a view_z view_a 5nm\n").contains("no readings"));
-        assert!(error("BRF\n").contains("no line of columns"));
+        assert!(error("BRF\n").contains("no line of column names"));
     }
 
     #[test]
-    fn its_sides_cannot_be_chosen() {
+    fn the_angular_convention_cannot_be_chosen() {
         let forward = ReadOptions {
             phi_zero: Some(Side::Forward),
             ..ReadOptions::default()
         };
         let error = read_with(TWO, &forward).unwrap_err().to_string();
-        assert!(error.contains("its sides cannot be chosen"), "{error}");
+        assert!(
+            error.contains("the angular convention cannot be chosen"),
+            "{error}"
+        );
         let source = ReadOptions {
             phi_zero: Some(Side::Source),
             ..ReadOptions::default()

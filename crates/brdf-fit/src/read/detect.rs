@@ -1,36 +1,62 @@
-//! Which format a file is in: by its content first, by its extension second.
+//! Detection of a file's format: by the content, then by the extension.
 
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::Path;
 
-use super::text::{lines, without_mark};
+use super::options::ReadOptions;
+use super::text::{lines, without_byte_order_mark};
 use super::{csv, goniometer, merl};
 use crate::scan::Format;
 
-/// How much of a file is looked at, in bytes: a header with its comments is not longer.
+/// How many bytes of a file are searched for the marks of a format: more than any header with its
+/// comments.
 pub(super) const HEAD: u64 = 65_536;
 
 impl Format {
-    /// The format of a text that begins with these bytes, or of a table that is all of them; `None`
-    /// where neither they nor the extension of its name tell.
+    /// Detects the format of a text that begins with `head`, or of a binary table that `head` is the
+    /// whole of; `None` where neither the content nor the extension of `path` is that of a known
+    /// format. The content takes precedence.
     pub fn detect(head: &[u8], path: &Path) -> Option<Self> {
-        if merl::recognises(head, head.len() as u64) {
+        if merl::is_table(head, head.len() as u64) {
             return Some(Self::Merl);
         }
         let end = head.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX));
-        by_content(without_mark(&head[..end])).or_else(|| by_extension(path))
+        by_content(without_byte_order_mark(&head[..end])).or_else(|| by_extension(path))
     }
 
-    /// The extensions that files of the format have, without the dot.
+    /// The usual extensions of files in the format, without the dot.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
             Self::Csv => &["csv", "tsv"],
             Self::Merl => &["binary"],
             Self::Astm => &["astm"],
             Self::Zemax => &["bsdf"],
-            // Their files have the extensions of any text.
+            // These files have no extension of their own.
             Self::BlackLab | Self::Goniometer => &[],
         }
     }
+}
+
+/// Whether a file is read as a MERL table, channel by channel: by the format in the options, by its
+/// content or by its extension.
+///
+/// Only regular files are: a pipe cannot be read a second time after the detection.
+pub(super) fn is_merl_file(path: &Path, options: &ReadOptions) -> bool {
+    let is_file = path.metadata().is_ok_and(|metadata| metadata.is_file());
+    is_file
+        && match options.format {
+            Some(format) => format == Format::Merl,
+            None => is_detected_as_merl(path).unwrap_or(false),
+        }
+}
+
+fn is_detected_as_merl(path: &Path) -> io::Result<bool> {
+    let file = File::open(path)?;
+    let size = file.metadata()?.len();
+    let mut head = Vec::new();
+    file.take(HEAD).read_to_end(&mut head)?;
+    Ok(merl::is_table(&head, size) || Format::detect(&head, path) == Some(Format::Merl))
 }
 
 fn by_content(head: &[u8]) -> Option<Format> {
@@ -58,7 +84,7 @@ fn by_extension(path: &Path) -> Option<Format> {
     let extension = path.extension()?.to_str()?.to_lowercase();
     let formats = Format::NAMED.into_iter().map(|(format, _)| format);
     let mut formats = formats.filter(|&format| format != Format::Csv);
-    // What is only called a table is read as one by default, and may be of no known format.
+    // CSV is the default: an extension such as .csv does not show that the format is known.
     formats.find(|format| format.extensions().contains(&extension.as_str()))
 }
 
@@ -76,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn content_goes_before_the_extension() {
+    fn the_content_takes_precedence_over_the_extension() {
         let csv = "# sample: x\npsi_deg,theta_deg,brdf_per_sr\n1,2,3\n";
         assert_eq!(detected(csv, "a.bsdf"), Some(Format::Csv));
         let astm = "LAB_NAME x\nVARS theta_i,phi_i,theta_s,phi_s,BRDF\n";
@@ -90,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn the_extension_tells_where_the_content_does_not() {
+    fn the_extension_decides_where_the_content_does_not() {
         assert_eq!(detected("", "a.BSDF"), Some(Format::Zemax));
         assert_eq!(detected("x", "a.astm"), Some(Format::Astm));
         assert_eq!(detected("x", "a.csv"), None);
@@ -98,9 +124,9 @@ mod tests {
     }
 
     #[test]
-    fn every_format_is_called_by_its_name() {
+    fn every_format_has_a_name_that_parses() {
         for (format, name) in Format::NAMED {
-            assert_eq!(name.parse(), Ok(format));
+            assert_eq!(name.parse::<Format>().unwrap(), format);
             assert_eq!(format.name(), name);
         }
         let error = "x".parse::<Format>().unwrap_err();

@@ -1,12 +1,14 @@
-//! A line of a table, split into its fields.
+//! Splitting the line of a table into its fields.
 //!
-//! Not by a CSV reader over the whole file: to it a stray quote opens a field that goes on over
-//! the following lines, and readings are swallowed without a word. A reading stands on one line,
-//! so a quote that its line does not close is an error of that line.
+//! Lines are split one at a time instead of by a CSV reader of the whole file. There, a stray quote
+//! would open a field that extends over the following lines, whose readings would be lost without a
+//! warning. Each reading is on one line, so that a quote that is not closed on its line is an error.
 
-/// Splits a line into `fields`, which is emptied first; quotes around a field are taken off.
+/// Splits a line into `fields`, whose previous content is dropped. Quotes around a field are removed.
 ///
-/// Errors: what is wrong with the quotes.
+/// # Errors
+///
+/// A quote is not closed, or text follows a closing quote.
 pub(super) fn split<'a>(
     line: &'a [u8],
     separator: u8,
@@ -32,7 +34,7 @@ pub(super) fn split<'a>(
     }
 }
 
-/// Spaces before a field; a tab may be the separator.
+/// The text without leading spaces. Tabs are kept: they may be the separator.
 fn without_spaces(text: &[u8]) -> &[u8] {
     let spaces = text.iter().take_while(|&&byte| byte == b' ').count();
     &text[spaces..]
@@ -43,7 +45,8 @@ fn up_to_separator(text: &[u8], separator: u8) -> (&[u8], &[u8]) {
     text.split_at(end.unwrap_or(text.len()))
 }
 
-/// The text before the quote that closes it, and what follows; two quotes stand for one.
+/// The text before the closing quote and the text after it. Two quotes in a row are a quote within the
+/// field, not its end.
 fn up_to_closing_quote(text: &[u8]) -> Result<(&[u8], &[u8]), &'static str> {
     let mut i = 0;
     while i < text.len() {
@@ -70,14 +73,14 @@ mod tests {
     }
 
     #[test]
-    fn fields_stand_between_separators() {
+    fn fields_are_the_texts_between_separators() {
         assert_eq!(fields("1,2,,4", b',').unwrap(), ["1", "2", "", "4"]);
         assert_eq!(fields("1;2,5;", b';').unwrap(), ["1", "2,5", ""]);
         assert_eq!(fields("1\t\t3", b'\t').unwrap(), ["1", "", "3"]);
     }
 
     #[test]
-    fn quotes_keep_separators_in_a_field() {
+    fn separators_within_quotes_are_part_of_the_field() {
         assert_eq!(
             fields("\"0,5\", \"b\" ,c", b',').unwrap(),
             ["0,5", "b", "c"]
@@ -93,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quote_that_its_line_does_not_close_is_an_error() {
+    fn a_quote_that_is_not_closed_on_its_line_is_an_error() {
         assert!(
             fields("1,2,\"5 inch", b',')
                 .unwrap_err()

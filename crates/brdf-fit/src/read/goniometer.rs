@@ -1,4 +1,4 @@
-//! Simple goniometer tables: the incidence angles in columns, the view angles in rows.
+//! Plain goniometer tables: incidence angles in columns, view angles in rows.
 //!
 //! ```text
 //! # sample: Test paint
@@ -9,40 +9,47 @@
 //! -50,       0.010, ,      0.022
 //! ```
 //!
-//! (Numbers made up.) The first line that is no comment holds the incidence zenith angles, behind a
-//! corner that is empty or holds words; each line after it a view zenith angle and a reading for
-//! each incidence. All angles are in degrees, the incidence in [0, 90), the view in (-90, 90) and
-//! signed, positive on the source's side where the reader is not told otherwise. A cell that is
-//! empty, `-` or `nan` is a reading that was not taken. Fields are separated by tabs, semicolons,
-//! commas or spaces; where it is not the comma, a decimal comma is understood.
+//! (The numbers are made up.) The first line that is not a comment holds the incidence zenith angles
+//! psi, after a corner that is empty or not a number. Each further line holds a view zenith angle theta
+//! and a reading for each incidence. All angles are in degrees, psi in [0, 90), theta in (-90, 90) and
+//! signed, by default positive on the source's side. A cell that is empty, `-` or `nan` is a reading that
+//! was not taken. Fields are separated by tabs, semicolons, commas or spaces; a decimal comma is accepted
+//! where the separator is not the comma.
 //!
-//! Comments are as in [`csv`](super::csv): `quantity` and `refractive_index` as there, and
-//! `wavelength_um`, and `phi_deg` for a table in another plane than that of incidence.
+//! Comments are as in [`csv`](super::csv), with the keys
+//! - `quantity`: `brdf` (f_r in 1/sr, the default), `brdf_cos` (f_r cos theta, divided by cos theta) or
+//!   `reflectance_factor` (pi f_r, divided by pi);
+//! - `refractive_index`, as there;
+//! - `wavelength_um`: the wavelength in um;
+//! - `phi_deg`: the view azimuth phi in degrees, 0 by default, for a table outside the plane of
+//!   incidence.
 //!
-//! There is no standard for such tables; this is what spreadsheets of goniometers have in common.
-//! The Black Lab's own files are no such table: see [`black_lab`](super::black_lab).
+//! There is no standard for such tables: this is the common form of goniometers' spreadsheets. The
+//! files of the Black Lab have another form, see [`black_lab`](super::black_lab).
 
-use super::text::{
-    Field, Quantity, Said, Text, comment_of, is_angle, is_reading, left_out, lines, parse_number,
-};
-use super::{ReadError, fields};
-use crate::scan::{Convention, Format};
-use crate::scan::{Measurement, Measurements};
+use super::comments::{Comments, comment_of, number_of_key};
+use super::conversion::{Quantity, left_out};
+use super::error::ReadError;
+use super::fields;
+use super::number::{Field, is_angle, is_reading, is_wavelength, parse_number};
+use super::text::{Text, lines};
+use crate::scan::{Convention, Format, Measurement, Measurements};
 
 const PSI: &str = "incidence";
 const THETA: &str = "view";
 const EXPECTED_PSI: &str = "expected degrees from 0 to below 90";
 const EXPECTED_THETA: &str = "expected degrees between -90 and 90";
 
+/// # Errors
+///
+/// The text is not such a table.
 pub(super) fn read(text: Text<'_>, convention: Convention) -> Result<Measurements, ReadError> {
-    let mut said = Said::default();
+    let mut comments = Comments::default();
     let mut table: Option<Table> = None;
     for line in text.checked_lines() {
         let (number, line) = line?;
         match (comment_of(line), &mut table) {
-            (Some(comment), _) => said
-                .add(&String::from_utf8_lossy(comment))
-                .map_err(|message| text.line_error(number, message))?,
+            (Some(comment), _) => comments.add(&text, number, comment)?,
             (None, _) if line.trim_ascii().is_empty() => {}
             (None, None) => table = Some(Table::new(&text, number, line)?),
             (None, Some(table)) => table.add_row(&text, number, line)?,
@@ -52,10 +59,10 @@ pub(super) fn read(text: Text<'_>, convention: Convention) -> Result<Measurement
     if table.cells.is_empty() {
         return Err(text.line_error(table.number, "no readings follow the incidence angles"));
     }
-    table.measurements(&text, said, convention)
+    table.measurements(&text, comments, convention)
 }
 
-/// Whether this begins with such a table.
+/// Whether a text begins with such a table.
 pub(super) fn is_table(head: &[u8]) -> bool {
     let is_row = |line: &&[u8]| comment_of(line).is_none() && !line.trim_ascii().is_empty();
     let mut rows = lines(head).map(|(_, line)| line).filter(is_row);
@@ -70,7 +77,7 @@ pub(super) fn is_table(head: &[u8]) -> bool {
     theta.is_some_and(|theta| parse_number(theta, separator.decimal_comma()).is_some())
 }
 
-/// What stands between the fields.
+/// The separator of the fields.
 #[derive(Clone, Copy)]
 enum Separator {
     Byte(u8),
@@ -78,7 +85,7 @@ enum Separator {
 }
 
 impl Separator {
-    /// That which makes a line a corner and numbers.
+    /// The separator by which a line is a corner and numbers.
     fn of(header: &[u8]) -> Option<Self> {
         let all = [b'\t', b';', b','].map(Self::Byte);
         let mut all = all.into_iter().chain([Self::Spaces]);
@@ -98,7 +105,11 @@ impl Separator {
         !matches!(self, Self::Byte(b','))
     }
 
-    /// The fields of a line, without blank ones at its end.
+    /// The fields of a line, without blank fields at its end.
+    ///
+    /// # Errors
+    ///
+    /// A quote is not closed, or text follows a closing quote.
     fn fields(self, line: &[u8]) -> Result<Vec<&[u8]>, &'static str> {
         let mut found = Vec::new();
         match self {
@@ -119,13 +130,13 @@ impl Separator {
     }
 }
 
-/// The table as it stands in the file, in degrees.
+/// The table as it is in the file.
 struct Table {
-    /// The line of the incidences.
+    /// The number of the line of incidence angles.
     number: u64,
     separator: Separator,
     psi_deg: Vec<f64>,
-    /// Incidence, view and reading, in the order of the file.
+    /// Incidence and view angle in degrees and the reading, in the order of the file.
     cells: Vec<[f64; 3]>,
     not_taken: usize,
 }
@@ -163,7 +174,7 @@ impl Table {
         let decimal_comma = self.separator.decimal_comma();
         let (found, expected) = (fields.len(), self.psi_deg.len() + 1);
         if found > expected {
-            let message = format!("{found} fields: expected {expected}, as there are columns");
+            let message = format!("{found} fields: expected {expected}, one for each column");
             return Err(text.line_error(number, message));
         }
         let field = |column: usize| Field {
@@ -188,16 +199,16 @@ impl Table {
     fn measurements(
         self,
         text: &Text<'_>,
-        said: Said,
+        comments: Comments,
         convention: Convention,
     ) -> Result<Measurements, ReadError> {
-        let number =
-            |key, expected, accepts| text.said_number(&said.metadata, key, expected, accepts);
-        let wavelength_um = number("wavelength_um", "expected micrometres above 0", |um| {
-            um > 0.0
-        })?;
+        let number = |key, expected, accepts| {
+            number_of_key(text, &comments.metadata, key, expected, accepts)
+        };
+        let expected = "expected micrometres above 0";
+        let wavelength_um = number("wavelength_um", expected, is_wavelength)?;
         let phi_deg = number("phi_deg", "expected degrees", is_angle)?.unwrap_or(0.0);
-        let quantity = said.quantity.unwrap_or(Quantity::Brdf);
+        let quantity = comments.quantity.unwrap_or(Quantity::Brdf);
         let reading = |[psi_deg, theta_deg, reading]: [f64; 3]| {
             let (theta, phi) = convention.in_model(theta_deg, phi_deg);
             Measurement {
@@ -213,8 +224,8 @@ impl Table {
         conversions.extend(left_out(self.not_taken, "not taken (empty cells)"));
         Ok(Measurements {
             source: text.path.display().to_string(),
-            metadata: said.metadata,
-            refractive_index: said.refractive_index,
+            metadata: comments.metadata,
+            refractive_index: comments.refractive_index,
             convention,
             format: Format::Goniometer,
             conversions,
@@ -269,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn each_cell_is_a_reading_and_empty_ones_are_counted() {
+    fn each_cell_is_a_reading_and_empty_cells_are_counted() {
         let scan = scan(TWO);
         let expected = [(10.0, -60.0, 0.1), (30.0, -60.0, 0.2), (30.0, 20.0, 0.4)];
         assert_eq!(cells(&scan), expected);
@@ -282,7 +293,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_stand_between_tabs_semicolons_commas_or_spaces() {
+    fn fields_are_separated_by_tabs_semicolons_commas_or_spaces() {
         let expected = cells(&scan(TWO));
         for text in [
             "\t10\t30\n-60\t0,1\t0,2\n20\t\t0,4\n",
@@ -295,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn other_sides_planes_and_quantities_are_converted_once() {
+    fn other_conventions_planes_and_quantities_are_converted_once() {
         let forward = Convention {
             theta_positive: Side::Forward,
             ..Convention::default()
@@ -320,11 +331,11 @@ mod tests {
         assert!(error("# a: b\n").contains("has no line of incidence angles"));
         assert!(error("# wavelength_um: red\nt,10\n1,1\n").contains("wavelength_um: \"red\""));
         let twice = "# phi_deg: 1\n# phi_deg: 2\nt,10\n1,1\n";
-        assert!(error(twice).contains("phi_deg stands there twice"));
+        assert!(error(twice).contains("phi_deg is given twice"));
     }
 
     #[test]
-    fn numbers_alone_are_no_such_table() {
+    fn a_table_of_numbers_alone_is_not_recognised() {
         assert!(!is_table(b"1,2,3\n4,5,6\n"));
         assert!(!is_table(b"theta,10,30\n"));
         assert!(!is_table(b"a,b\n1,2\n"));

@@ -3,25 +3,27 @@
 use std::path::Path;
 
 use super::error::ReadError;
-use super::text;
 use crate::scan::{Convention, Format, Side};
 
 /// How a file is read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// The format; found by the content, then by the extension, where it is not given.
+    /// The format of the file. `None` detects it by the content, then by the extension.
     pub format: Option<Format>,
-    /// The side on which the file counts theta positive; as its format has it where it is not given.
+    /// The side of the normal on which the file counts theta positive. `None` takes the convention of
+    /// the format.
     pub theta_positive: Option<Side>,
-    /// The side on which the file's azimuth is zero; as its format has it where it is not given.
+    /// The side of the normal on which the file's azimuth is zero. `None` takes the convention of the
+    /// format.
     pub phi_zero: Option<Side>,
-    /// How many readings of each wavelength are kept, evenly over the directions; all where it is not
-    /// given.
+    /// How many readings of each wavelength are kept, spread evenly over the directions. `None` keeps
+    /// all.
     pub sample: Option<usize>,
 }
 
 impl ReadOptions {
-    /// The convention of a file whose format has one of its own.
+    /// The angular convention of a file: the sides that are set here, and otherwise those of its
+    /// format.
     pub fn convention(&self, of_format: Convention) -> Convention {
         Convention {
             theta_positive: self.theta_positive.unwrap_or(of_format.theta_positive),
@@ -29,10 +31,12 @@ impl ReadOptions {
         }
     }
 
-    /// The convention of a file whose format leaves no choice.
+    /// The angular convention of a file whose format fixes it.
     ///
-    /// Errors: an option says that it is another, and `why` it cannot be.
-    pub(super) fn fixed(
+    /// # Errors
+    ///
+    /// A side is set that differs from the format's; the message gives `why` the format fixes it.
+    pub(super) fn fixed_convention(
         &self,
         path: &Path,
         of_format: Convention,
@@ -41,7 +45,7 @@ impl ReadOptions {
         if self.convention(of_format) == of_format {
             return Ok(of_format);
         }
-        let message = format!("its sides cannot be chosen: {why}");
-        Err(text::file_error(path, message))
+        let message = format!("the angular convention cannot be chosen: {why}");
+        Err(ReadError::file(path, message))
     }
 }

@@ -9,7 +9,7 @@ use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 use super::run::Report;
 use crate::fit::Fit;
 use crate::format::in_degrees;
-use crate::read::Scan;
+use crate::read::LazyScan;
 use crate::scan::Measurements;
 
 /// The columns of [`write_parameters`]. `stage1_e_percent` is E over the readings of stage 1.
@@ -141,7 +141,7 @@ pub const THEORY_COLUMNS: [&str; 8] = [
 ///
 /// The writer fails, or the readings of a table cannot be read again.
 pub fn write_curves<'a>(
-    fits: impl Iterator<Item = (&'a Scan, &'a Fit)>,
+    fits: impl Iterator<Item = (&'a LazyScan, &'a Fit)>,
     writer: impl io::Write,
 ) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);

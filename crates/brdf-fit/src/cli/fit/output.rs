@@ -8,20 +8,20 @@ use crate::cli::failure::Failure;
 use crate::cli::stream;
 use crate::output;
 use crate::plot::write_folder;
-use crate::read::Scan;
+use crate::read::LazyScan;
 use crate::report::{Document, Report, write_curves, write_models, write_parameters};
 
 /// Writes the files and prints. A failure of one output does not prevent the others: all failures
 /// are returned.
 pub(super) fn deliver(
     arguments: &Arguments,
-    scans: &[&Scan],
+    scans: &[&LazyScan],
     reports: Vec<Report>,
 ) -> Vec<Failure> {
     let scans = scans.iter().copied();
     let mut failures = Vec::new();
     if let Some(folder) = &arguments.plot {
-        let reports: Vec<(&Scan, &Report)> = scans.clone().zip(&reports).collect();
+        let reports: Vec<(&LazyScan, &Report)> = scans.clone().zip(&reports).collect();
         let written = write_folder(&reports, folder);
         failures.extend(written.err().map(Failure::from));
     }

@@ -12,7 +12,7 @@ use crate::cli::progress::{PhaseMessage, bar};
 use crate::cli::stream;
 use crate::fit::{FitError, FitOptions};
 use crate::progress::{NoObserver, Observer};
-use crate::read::{ReadError, Scan};
+use crate::read::{LazyScan, ReadError};
 use crate::report::{Document, Report};
 
 /// Fits all scans, and prints and writes the results. A problem with one scan or one output does
@@ -65,8 +65,8 @@ fn read_all(
     arguments: &Arguments,
     document: Option<&Document>,
     problems: &mut Problems,
-) -> Vec<Scan> {
-    let files: Vec<Result<Vec<Scan>, ReadError>> = arguments
+) -> Vec<LazyScan> {
+    let files: Vec<Result<Vec<LazyScan>, ReadError>> = arguments
         .files
         .par_iter()
         .map(|file| stream::scans(file, &arguments.read_options(file, document)))
@@ -82,11 +82,11 @@ fn read_all(
 }
 
 /// A scan of one wavelength, and how it is fitted.
-type Job<'a> = (&'a Scan, FitOptions);
+type Job<'a> = (&'a LazyScan, FitOptions);
 
 /// The fits of all scans, in the order of the files, wavelengths and models.
 fn plan<'a>(
-    scans: &'a [Scan],
+    scans: &'a [LazyScan],
     arguments: &Arguments,
     document: Option<&Document>,
     problems: &mut Problems,

@@ -1,45 +1,55 @@
-//! What stands before the rows: keys, and the names of the columns.
+//! The lines before the rows: keys with values, and the names of the columns.
 
 use crate::read::angles::AngleUnit;
-use crate::read::text::{self, Field, Quantity, Text, is_angle, micrometres};
-use crate::read::{ReadError, ReadOptions};
-use crate::scan::Metadata;
-use crate::scan::RefractiveIndex;
-use crate::scan::{Convention, Side};
+use crate::read::comments;
+use crate::read::conversion::Quantity;
+use crate::read::error::ReadError;
+use crate::read::number::{Field, is_angle, micrometres};
+use crate::read::options::ReadOptions;
+use crate::read::text::Text;
+use crate::scan::{Convention, Metadata, RefractiveIndex, Side};
 
-/// One of the two directions' angles.
+/// The names of the angles of source (i) and view (s).
 const ANGLES: [&str; 4] = ["theta_i", "phi_i", "theta_s", "phi_s"];
 
-/// What a column holds.
+/// The content of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Column {
-    /// By its place in [`ANGLES`].
+    /// An angle, by its index in [`ANGLES`].
     Angle(usize),
-    /// At a wavelength in micrometres, where the name gives one.
+    /// A value, at the wavelength in micrometres that the name of the column gives.
     Value(Option<f64>),
+    /// The standard deviation of the value.
     Sigma,
+    /// Not read.
     Unused,
 }
 
-/// What stands before the rows.
+/// The lines before the rows.
 pub(super) struct Header {
     /// The number of the line `VARS`.
     number: u64,
     pub(super) metadata: Metadata,
     pub(super) names: Vec<String>,
     pub(super) columns: Vec<Column>,
-    /// Angles that are the same for all rows, in the file's unit.
+    /// Angles that are the same in all rows, by their index in [`ANGLES`], in the file's unit.
     pub(super) given: [Option<f64>; 4],
     pub(super) unit: Option<AngleUnit>,
     pub(super) quantity: Quantity,
     wavelength_um: Option<f64>,
     pub(super) refractive_index: Option<RefractiveIndex>,
+    /// The number of rows that the file states.
     count: Option<f64>,
-    /// Sentences about the columns.
-    pub(super) said: Vec<String>,
+    /// Sentences that report conversions.
+    pub(super) conversions: Vec<String>,
 }
 
 impl Header {
+    /// Reads up to the line `VARS`.
+    ///
+    /// # Errors
+    ///
+    /// A key or a column is not valid, or there is no line `VARS`.
     pub(super) fn read<'a>(
         text: &Text<'_>,
         lines: &mut impl Iterator<Item = Result<(u64, &'a [u8]), ReadError>>,
@@ -55,7 +65,7 @@ impl Header {
             wavelength_um: None,
             refractive_index: None,
             count: None,
-            said: Vec::new(),
+            conversions: Vec::new(),
         };
         for line in lines {
             let (number, line) = line?;
@@ -70,7 +80,7 @@ impl Header {
             header.take_key(text, number, key, value)?;
         }
         Err(text
-            .error("has no line VARS: expected one with theta_i, theta_s and what was measured"))
+            .error("has no line VARS: expected one with theta_i, theta_s and a column of values"))
     }
 
     fn take_key(
@@ -84,8 +94,8 @@ impl Header {
         match key.as_str() {
             "theta_i" | "phi_i" | "theta_s" | "phi_s" => {
                 let angle = text.number(line, &key, &field, "expected an angle", is_angle)?;
-                let place = ANGLES.iter().position(|name| *name == key);
-                if let Some(given) = place.and_then(|place| self.given.get_mut(place)) {
+                let index = ANGLES.iter().position(|name| *name == key);
+                if let Some(given) = index.and_then(|index| self.given.get_mut(index)) {
                     *given = Some(angle);
                 }
             }
@@ -129,29 +139,30 @@ impl Header {
         self.check_columns(text)
     }
 
-    /// Of X, Y and Z the second is the value.
+    /// Of X, Y and Z, Y is the value; R, G and B are refused.
     fn take_colours(&mut self, text: &Text<'_>) -> Result<(), ReadError> {
-        let place = |name: &str| self.names.iter().position(|other| other == name);
-        if let (Some(_), Some(_), Some(_)) = (place("R"), place("G"), place("B")) {
-            let message = "R, G and B are colours of a screen: expected wavelengths such as 400nm, \
-                           one BRDF, or X, Y and Z, of which Y is read";
+        let position = |name: &str| self.names.iter().position(|other| other == name);
+        if let (Some(_), Some(_), Some(_)) = (position("R"), position("G"), position("B")) {
+            let message = "R, G and B are display colours: expected wavelengths such as 400nm, one \
+                           BRDF, or X, Y and Z, of which Y is read";
             return Err(text.line_error(self.number, message));
         }
-        if let (Some(_), Some(y), Some(_)) = (place("X"), place("Y"), place("Z")) {
+        if let (Some(_), Some(y), Some(_)) = (position("X"), position("Y"), position("Z")) {
             self.columns[y] = Column::Value(None);
-            let said = "Y of X, Y and Z is read: the BRDF weighted by luminous efficiency";
-            self.said.push(said.to_owned());
+            let sentence = "of X, Y and Z, Y is read: the BRDF weighted by the luminous efficiency";
+            self.conversions.push(sentence.to_owned());
         }
         Ok(())
     }
 
-    /// Where no column is known to be the value, the only one that is not known is.
+    /// Where no column is known as a value, the only column that is left is the value. The name of the
+    /// value may also name its quantity.
     fn take_only_value(&mut self, text: &Text<'_>) -> Result<(), ReadError> {
         let unused = |column: &Column| *column == Column::Unused;
         let is_value = |column: &Column| matches!(column, Column::Value(_));
         if !self.columns.iter().any(is_value) {
-            let mut places = (0..self.columns.len()).filter(|&i| unused(&self.columns[i]));
-            if let (Some(only), None) = (places.next(), places.next()) {
+            let mut left = (0..self.columns.len()).filter(|&i| unused(&self.columns[i]));
+            if let (Some(only), None) = (left.next(), left.next()) {
                 self.columns[only] = Column::Value(None);
             }
         }
@@ -159,12 +170,12 @@ impl Header {
             .columns
             .iter()
             .position(|column| *column == Column::Value(None));
-        // The plain names are also those of columns whose quantity the header has told.
-        let Some(name) = value.map(|place| &self.names[place]) else {
+        let Some(name) = value.map(|index| &self.names[index]) else {
             return Ok(());
         };
-        let told = quantity_of(text, self.number, name)?;
-        if let Some(quantity) = told.filter(|quantity| *quantity != Quantity::Brdf) {
+        // A column that is called BRDF may have another quantity that a key has given.
+        let named = quantity_of(text, self.number, name)?;
+        if let Some(quantity) = named.filter(|quantity| *quantity != Quantity::Brdf) {
             self.quantity = quantity;
         }
         Ok(())
@@ -173,14 +184,14 @@ impl Header {
     fn check_columns(&self, text: &Text<'_>) -> Result<(), ReadError> {
         let has = |column: &Column| self.columns.iter().filter(|other| *other == column).count();
         let problem = |message: String| Err(text.line_error(self.number, message));
-        for (place, name) in ANGLES.iter().enumerate() {
-            let found = has(&Column::Angle(place));
+        for (index, name) in ANGLES.iter().enumerate() {
+            let found = has(&Column::Angle(index));
             if found > 1 {
-                return problem(format!("column {name} stands there twice"));
+                return problem(format!("column {name} is given twice"));
             }
-            if found == 0 && self.given[place].is_none() && name.starts_with("theta") {
+            if found == 0 && self.given[index].is_none() && name.starts_with("theta") {
                 return problem(format!(
-                    "missing column {name}: expected theta_i, theta_s and what was measured"
+                    "missing column {name}: expected theta_i, theta_s and a column of values"
                 ));
             }
         }
@@ -191,23 +202,31 @@ impl Header {
             .count();
         if values == 0 {
             return problem(
-                "no column for what was measured: expected BRDF or wavelengths such as 400nm"
+                "no column of values: expected BRDF or wavelengths such as 400nm".to_owned(),
+            );
+        }
+        let without_wavelength = has(&Column::Value(None));
+        if without_wavelength > 1 || (without_wavelength == 1 && values > 1) {
+            return problem(
+                "several columns of values, without wavelengths: expected names such as 400nm"
                     .to_owned(),
             );
         }
-        let untold = has(&Column::Value(None));
-        if untold > 1 || (untold == 1 && values > 1) {
-            return problem(
-                "several columns for what was measured, without wavelengths".to_owned(),
-            );
-        }
         if has(&Column::Sigma) > 0 && values > 1 {
-            return problem("one column sigma for several wavelengths".to_owned());
+            return problem(
+                "one column sigma for several wavelengths: expected a single column of values"
+                    .to_owned(),
+            );
         }
         Ok(())
     }
 
-    /// Where phi_i is not given, the coordinates are those of the beam.
+    /// The angular convention of the file. Where phi_i is not given, the coordinates are those of the
+    /// beam, with phi_s = 0 on the forward side.
+    ///
+    /// # Errors
+    ///
+    /// The options set another side of positive theta.
     pub(super) fn convention(
         &self,
         text: &Text<'_>,
@@ -223,23 +242,27 @@ impl Header {
             phi_zero: None,
             ..options.clone()
         };
-        let why = "theta_s counts towards phi_s, and phi_zero says which side that is";
-        theta_only.fixed(text.path, of_format, why)?;
+        let why = "theta_s counts towards phi_s; give the side of azimuth zero instead";
+        theta_only.fixed_convention(text.path, of_format, why)?;
         Ok(options.convention(of_format))
     }
 
+    /// # Errors
+    ///
+    /// There are no rows, or another number of them than the file states.
     pub(super) fn check_count(&self, text: &Text<'_>, found: usize) -> Result<(), ReadError> {
         match self.count {
             _ if found == 0 => Err(text.line_error(self.number, "no rows follow VARS")),
             Some(count) if count != found as f64 => {
-                let message = format!("{found} rows follow: expected {count}, as the header says");
+                let message =
+                    format!("{found} rows follow: expected {count}, as the header states");
                 Err(text.line_error(self.number, message))
             }
             _ => Ok(()),
         }
     }
 
-    /// Of each column of values.
+    /// The wavelength in micrometres of each column of values.
     pub(super) fn wavelengths(&self) -> impl Iterator<Item = Option<f64>> {
         self.columns.iter().filter_map(|column| match column {
             Column::Value(wavelength) => Some(wavelength.or(self.wavelength_um)),
@@ -247,6 +270,7 @@ impl Header {
         })
     }
 
+    /// The names of the columns that are not read.
     pub(super) fn unused(&self) -> Vec<String> {
         let named = self.names.iter().zip(&self.columns);
         let unused = named.filter(|(_, column)| **column == Column::Unused);
@@ -258,8 +282,8 @@ impl Column {
     fn named(name: &str) -> Self {
         let lower = name.to_lowercase();
         let as_s = lower.replace("_r", "_s");
-        if let Some(place) = ANGLES.iter().position(|angle| *angle == as_s) {
-            return Self::Angle(place);
+        if let Some(index) = ANGLES.iter().position(|angle| *angle == as_s) {
+            return Self::Angle(index);
         }
         let wavelength_um = lower
             .strip_suffix("nm")
@@ -273,11 +297,11 @@ impl Column {
     }
 }
 
-/// The key in lower case and what stands behind it; of a comment only `key: value`.
+/// The key of a line in lower case and its value; of a comment only those of `key: value`.
 fn key_and_value(line: &[u8]) -> Option<(String, String)> {
     let line = String::from_utf8_lossy(line);
     if let Some(comment) = line.trim_start().strip_prefix('#') {
-        return text::key_and_value(comment).filter(|(key, _)| key != "vars");
+        return comments::key_and_value(comment).filter(|(key, _)| key != "vars");
     }
     let line = line.trim();
     let (key, value) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -290,12 +314,13 @@ fn unit_of(text: &Text<'_>, line: u64, value: &str) -> Result<AngleUnit, ReadErr
         "deg" | "degree" | "degrees" => Ok(AngleUnit::Degrees),
         "rad" | "radian" | "radians" => Ok(AngleUnit::Radians),
         _ => {
-            let message = "is no unit of angles: expected deg or rad".to_owned();
+            let message = "is not an angle unit: expected deg or rad";
             Err(text.value_error(line, "angle_unit", value.as_bytes(), message))
         }
     }
 }
 
+/// The wavelength in micrometres. Without a unit, numbers below 100 are in um and others in nm.
 fn wavelength_of(text: &Text<'_>, line: u64, value: &str) -> Result<f64, ReadError> {
     let lower = value.to_lowercase();
     let lower = lower.trim();
@@ -317,19 +342,22 @@ fn wavelength_of(text: &Text<'_>, line: u64, value: &str) -> Result<f64, ReadErr
     nm.or_else(|| um.and_then(number))
         .or_else(bare)
         .ok_or_else(|| {
-            let message =
-                "is not a wavelength: expected one such as 0.6328 um or 632.8 nm".to_owned();
+            let message = "is not a wavelength: expected one such as 0.6328 um or 632.8 nm";
             text.value_error(line, "wavelength", value.as_bytes(), message)
         })
 }
 
-/// What a name says that the values are; `None` where it says nothing that is known.
+/// The quantity that a name contains; `None` where it contains none.
+///
+/// # Errors
+///
+/// The name is that of a BTDF.
 fn quantity_of(text: &Text<'_>, line: u64, name: &str) -> Result<Option<Quantity>, ReadError> {
     let lower = name.to_lowercase();
     let mut parts = lower.split(|c: char| !c.is_alphanumeric());
     let has = |word: &str| parts.clone().any(|part| part == word);
     if has("btdf") {
-        let message = "BTDF: the model is of reflection, expected a BRDF";
+        let message = "BTDF: the model describes reflection, expected a BRDF";
         return Err(text.line_error(line, message));
     }
     if has("dsf") || has("ars") || has("cos") || parts.any(|part| part.starts_with("cosine")) {

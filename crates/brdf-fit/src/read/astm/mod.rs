@@ -1,6 +1,6 @@
-//! ASTM E1392 and E2387 text, as optical instruments write it, and as the Cornell light
-//! measurement laboratory did: lines `KEY value`, of which the last is `VARS` and names the columns,
-//! then a row for each pair of directions.
+//! ASTM E1392 and E2387 text, as optical instruments write it, and the layout of the Cornell light
+//! measurement laboratory: lines `KEY value`, the last of which is `VARS` and names the columns, and a
+//! row for each pair of directions.
 //!
 //! ```text
 //! LAB_NAME     a laboratory
@@ -11,50 +11,65 @@
 //! 0.3490659,0,0.5235988,3.1415927,0.11,0.12
 //! ```
 //!
-//! (Numbers made up.)
+//! (The numbers are made up.)
 //!
 //! | column or key | |
 //! |---|---|
 //! | `theta_i` | zenith angle of the source |
-//! | `phi_i` | its azimuth |
+//! | `phi_i` | azimuth of the source |
 //! | `theta_s` | zenith angle of the view (s for scatter), also `theta_r` |
-//! | `phi_s` | its azimuth, also `phi_r`; 0 where nothing says it |
-//! | `400nm` | the value at that wavelength; as many as there are, 31 or 65 in Cornell's files |
-//! | `X,Y,Z` | tristimulus values: Y is read, the BRDF weighted by luminous efficiency |
-//! | `sigma` | standard deviation of the value, where there is one value a row |
-//! | another | the value, where there is no other; else it is not used, and listed |
+//! | `phi_s` | azimuth of the view, also `phi_r`; 0 where it is not given |
+//! | `400nm` | the value at that wavelength; any number of columns, 31 or 65 in Cornell's files |
+//! | `X,Y,Z` | tristimulus values: Y is read, the BRDF weighted by the luminous efficiency |
+//! | `sigma` | standard deviation of the value, where a row has one value |
+//! | any other | the value, if it is the only column left and no other is a value; otherwise it is not read, but listed |
 //!
-//! An angle that is the same for all rows, and `WAVELENGTH`, may stand as a key instead.
+//! An angle that is the same in all rows, and `WAVELENGTH`, may be given as a key instead.
 //!
-//! **Units.** `ANGLE_UNIT deg` or `rad` says it. Where nothing does: radians, as in Cornell's files
-//! (and as libbsdf and ALTA read all), unless an angle is larger than there are in radians: then
-//! degrees. `WAVELENGTH` is in um or nm as its unit says, without one in um below 100 and else nm.
+//! **Units.** `ANGLE_UNIT` is `deg` or `rad`. Where it is missing, angles are in radians, as in Cornell's
+//! files (and as libbsdf and ALTA read all files), unless one exceeds the range of angles in radians:
+//! then they are in degrees. `WAVELENGTH` is in um or nm by its unit; without a unit it is in um below
+//! 100, and in nm otherwise.
 //!
-//! **Azimuth.** phi_s - phi_i counts: where it is 0 the view looks back at the source. Cornell's
-//! files give the azimuths of both directions, phi_i = 0 and phi_s from -pi to pi, so the lobe stands
-//! at pi. E1392 prefers coordinates of the beam, in which phi_i is always 180 deg and the specular
-//! direction is theta_s = theta_i at phi_s = 0: this is taken where no phi_i is given.
-//! `--phi-zero` says it where a file counts otherwise.
+//! **Azimuth.** The model's phi is phi_s - phi_i: where it is 0, the view looks back at the source.
+//! Cornell's files give the azimuths of both directions, phi_i = 0 and phi_s from -pi to pi, with the
+//! specular lobe at pi. E1392 prefers coordinates of the beam, in which phi_i is always 180 deg and the
+//! specular direction is theta_s = theta_i at phi_s = 0: these are assumed where phi_i is not given, and
+//! phi = phi_s + 180 deg. [`ReadOptions::phi_zero`] sets the side of azimuth zero for files that follow
+//! neither.
 //!
-//! **Quantity.** E1392 and E2387 define the BRDF with the cosine of the view angle divided out,
-//! [1/sr]; what the older one calls cosine-corrected BRDF and the newer one differential scattering
-//! function (DSF) is BRDF cos theta_s. Names of columns and the key `QUANTITY` or `MEAS_NAME` tell: `BRDF`,
-//! `BSDF`; `BRDF_COS`, `DSF`, `ARS` or a name with `cosine`, which is divided by cos theta_s; `BRF`, which is
-//! divided by pi. `BTDF` is an error, and so are `R,G,B`, the colours of a screen. Without a word the BRDF.
+//! **Quantity.** In E1392 and E2387, the BRDF in 1/sr has the cosine of the view angle divided out. The
+//! cosine-corrected BRDF of the former, which the latter calls differential scattering function (DSF),
+//! is f_r cos theta_s. The names of columns and the keys `QUANTITY` and `MEAS_NAME` are read as
+//!
+//! | name | value | conversion |
+//! |---|---|---|
+//! | `BRDF`, `BSDF`, or none | f_r | none |
+//! | `BRDF_COS`, `DSF`, `ARS`, or one with `cosine` | f_r cos theta_s | f_r = value / cos theta_s |
+//! | `BRF` | reflectance factor, pi f_r | f_r = value / pi |
+//!
+//! `BTDF` is an error, and so are the display colours `R,G,B`.
 //!
 //! Sources: "Data file formats" of graphics.cornell.edu/online/measurements/reflectance; libbsdf's
-//! `AstmReader` and ALTA's `data_astm`, which read these; the public abstracts of ASTM E1392-96 and E2387-05;
-//! J. C. Stover, Optical Scattering, for theta_s = theta_i, phi_s = 0 as the specular direction.
+//! `AstmReader` and ALTA's `data_astm`, which read these files; the public abstracts of ASTM E1392-96
+//! and E2387-05; J. C. Stover, Optical Scattering, for theta_s = theta_i, phi_s = 0 as the specular
+//! direction.
 
 mod header;
 mod rows;
 
-use super::text::{Text, comment_of};
-use super::{ReadError, ReadOptions};
+use super::comments::comment_of;
+use super::error::ReadError;
+use super::options::ReadOptions;
+use super::text::Text;
 use crate::scan::Measurements;
 use header::Header;
 use rows::Rows;
 
+/// # Errors
+///
+/// The text is not such a file, or has no readings above the surface, or `options` set another side of
+/// positive theta.
 pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
     let mut lines = text.checked_lines();
     let header = Header::read(&text, &mut lines)?;
@@ -95,7 +110,7 @@ mod tests {
     const DEG: f64 = PI / 180.0;
 
     #[test]
-    fn cornell_files_hold_radians_and_a_wavelength_a_column() {
+    fn cornell_files_have_radians_and_one_wavelength_per_column() {
         let text = "LAB_NAME x\r\nSAMPLE_NAME \"Test paint\"\r\n\r\nNUM_POINTS 2\r\n\
                     VARS theta_i,phi_i,theta_s,phi_s,400nm,632.8nm\r\n\
                     0.35,0,0.35,-3.141592653589793,0.3,0.4\r\n0.35,0,0.5,1.5,-0.01,0.2\r\n";
@@ -108,7 +123,7 @@ mod tests {
         assert_eq!(scan.readings()[2].brdf, -0.01);
         assert_eq!(scan.readings()[2].phi, 1.5);
         assert_eq!(scan.metadata.get("sample"), Some("Test paint"));
-        assert!(scan.conversions[0].contains("taken for radians"));
+        assert!(scan.conversions[0].contains("assumed to be in radians"));
     }
 
     #[test]
@@ -140,18 +155,24 @@ mod tests {
     }
 
     #[test]
-    fn degrees_are_seen_where_nothing_says_so() {
+    fn degrees_are_recognised_where_no_unit_is_given() {
         let scan =
             scan("VARS theta_i phi_i theta_s phi_s BSDF\n30 180 20 0 0.5\n30 180 95 0 0.4\n");
         assert_eq!(scan.readings().len(), 1);
         assert!((scan.readings()[0].psi - 30.0 * DEG).abs() < 1e-15);
-        let said = scan.conversions.join("; ");
-        assert!(said.contains("taken for degrees"), "{said}");
-        assert!(said.contains("1 reading at or beyond 90 deg"), "{said}");
+        let sentences = scan.conversions.join("; ");
+        assert!(
+            sentences.contains("assumed to be in degrees"),
+            "{sentences}"
+        );
+        assert!(
+            sentences.contains("1 reading at or beyond 90 deg"),
+            "{sentences}"
+        );
     }
 
     #[test]
-    fn cosine_corrected_values_are_divided() {
+    fn cosine_corrected_values_are_divided_by_the_cosine() {
         let with = |head: &str, name: &str| {
             let text = format!("{head}ANGLE_UNIT deg\nVARS theta_i theta_s {name}\n30 60 0.5\n");
             scan(&text).readings()[0].brdf
@@ -170,20 +191,20 @@ mod tests {
     }
 
     #[test]
-    fn y_is_read_of_xyz_and_rgb_is_refused() {
+    fn of_xyz_the_column_y_is_read_and_rgb_is_refused() {
         let xyz = "VARS theta_i,phi_i,theta_s,phi_s,X,Y,Z\n0,0,0.5,0,1,2,3\n";
         let scan = scan(xyz);
         assert_eq!(scan.readings()[0].brdf, 2.0);
         assert_eq!(scan.ignored_columns, ["X", "Z"]);
         let rgb = error(&xyz.replace("X,Y,Z", "R,G,B"));
         assert!(
-            rgb.contains("line 1: R, G and B are colours of a screen"),
+            rgb.contains("line 1: R, G and B are display colours"),
             "{rgb}"
         );
     }
 
     #[test]
-    fn negative_angles_are_on_the_other_side() {
+    fn negative_zenith_angles_are_on_the_opposite_side() {
         let scan = scan("VARS theta_i,phi_i,theta_s,phi_s,BRDF\n-0.3,0,0.5,0,1\n");
         let reading = scan.readings()[0];
         assert_eq!((reading.psi, reading.phi), (0.3, PI));
@@ -204,11 +225,11 @@ mod tests {
         assert!(rows("0,0,0,0,1\n0,0,0,0,1\n").contains("2 rows follow: expected 1"));
         assert!(error("LAB_NAME x\n").contains("has no line VARS"));
         assert!(error("VARS theta_i,BRDF\n").contains("missing column theta_s"));
-        assert!(error("VARS theta_i,theta_s\n").contains("no column for what was measured"));
+        assert!(error("VARS theta_i,theta_s\n").contains("no column of values"));
+        assert!(error("VARS theta_i,theta_s,theta_r,BRDF\n").contains("theta_s is given twice"));
         assert!(
-            error("VARS theta_i,theta_s,theta_r,BRDF\n").contains("theta_s stands there twice")
+            error("VARS theta_i,theta_s,BTDF\n").contains("BTDF: the model describes reflection")
         );
-        assert!(error("VARS theta_i,theta_s,BTDF\n").contains("BTDF: the model is of reflection"));
         assert!(error("VARS theta_i,theta_s,1nm,2nm,sigma\n").contains("one column sigma"));
         assert!(error("VARS theta_i,theta_s,1nm,BRDF\n").contains("without wavelengths"));
         assert!(error("ANGLE_UNIT gon\n").contains("line 1, column angle_unit: \"gon\""));
@@ -219,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn theta_counts_towards_the_azimuth_alone() {
+    fn the_side_of_positive_theta_cannot_be_chosen() {
         let options = ReadOptions {
             theta_positive: Some(Side::Forward),
             ..ReadOptions::default()
@@ -228,7 +249,7 @@ mod tests {
         assert!(
             error
                 .to_string()
-                .contains("its sides cannot be chosen: theta_s counts"),
+                .contains("the angular convention cannot be chosen: theta_s counts"),
             "{error}"
         );
     }

@@ -1,25 +1,27 @@
-//! The rows, and what becomes of them.
+//! The rows, and their conversion to readings.
 
 use super::header::{Column, Header};
-use crate::read::ReadError;
 use crate::read::angles::{AngleUnit, TwoDirections};
-use crate::read::text::{
-    BEYOND_HORIZON, Field, Text, is_angle, is_deviation, is_reading, left_out, words,
-};
-use crate::scan::{Convention, Format, Side};
-use crate::scan::{Measurement, Measurements};
+use crate::read::conversion::{BEYOND_HORIZON, left_out};
+use crate::read::error::ReadError;
+use crate::read::number::{Field, is_angle, is_deviation, is_reading};
+use crate::read::text::{Text, words};
+use crate::scan::{Convention, Format, Measurement, Measurements, Side};
 
-/// The rows as they stand in the file.
+/// The rows as they are in the file.
 #[derive(Default)]
 pub(super) struct Rows {
     pub(super) directions: Vec<TwoDirections>,
-    /// For each row a value for each column of values.
+    /// The values, row by row: one for each column of values.
     values: Vec<f64>,
-    /// For each row, where there is that column.
+    /// The standard deviations of the rows; empty where the file has none.
     sigmas: Vec<Option<f64>>,
 }
 
 impl Rows {
+    /// # Errors
+    ///
+    /// The row has another number of fields than there are columns, or one of them is not valid.
     pub(super) fn add(
         &mut self,
         text: &Text<'_>,
@@ -38,9 +40,9 @@ impl Rows {
         for (field, (name, column)) in fields.into_iter().zip(named) {
             let field = Field::plain(field);
             match column {
-                Column::Angle(place) => {
+                Column::Angle(index) => {
                     let angle = text.number(number, name, &field, "expected an angle", is_angle)?;
-                    if let Some(slot) = angles.get_mut(*place) {
+                    if let Some(slot) = angles.get_mut(*index) {
                         *slot = angle;
                     }
                 }
@@ -67,7 +69,7 @@ impl Rows {
         Ok(())
     }
 
-    /// The unit of the angles, and the sentence about it.
+    /// The unit of the angles, and the sentence that reports it.
     fn unit(&self, header: &Header) -> (AngleUnit, String) {
         let named = |unit| match unit {
             AngleUnit::Degrees => "degrees",
@@ -76,9 +78,10 @@ impl Rows {
         if let Some(unit) = header.unit {
             return (
                 unit,
-                format!("angles are in {}, as the file says", named(unit)),
+                format!("angles are in {}, as the file states", named(unit)),
             );
         }
+        // Rounding of the last digit in the file is allowed for.
         let turn = 2.0 * std::f64::consts::PI + 1e-3;
         let in_radians = |row: &TwoDirections| {
             row.theta_i.abs() < turn / 4.0
@@ -87,34 +90,31 @@ impl Rows {
                 && row.phi_s.abs() < turn
         };
         let (unit, why) = if self.directions.iter().all(in_radians) {
-            (
-                AngleUnit::Radians,
-                "none is larger than there are in radians",
-            )
+            (AngleUnit::Radians, "all are within the range of radians")
         } else {
-            (
-                AngleUnit::Degrees,
-                "some are larger than there are in radians",
-            )
+            (AngleUnit::Degrees, "some exceed the range of radians")
         };
         (
             unit,
             format!(
-                "angles are taken for {}: the file does not say, and {why}",
+                "angles are assumed to be in {}: the file states no unit, and {why}",
                 named(unit)
             ),
         )
     }
 
+    /// # Errors
+    ///
+    /// No reading is above the surface.
     pub(super) fn measurements(
         self,
         text: &Text<'_>,
         header: Header,
         convention: Convention,
     ) -> Result<Measurements, ReadError> {
-        let (unit, said) = self.unit(&header);
-        let mut conversions = vec![said, azimuth(convention)];
-        conversions.extend(header.said.iter().cloned());
+        let (unit, about_unit) = self.unit(&header);
+        let mut conversions = vec![about_unit, azimuth(convention)];
+        conversions.extend(header.conversions.iter().cloned());
         conversions.extend(header.quantity.conversion());
         let (readings, beyond) = self.readings(&header, unit, convention);
         if readings.is_empty() {
@@ -134,7 +134,7 @@ impl Rows {
         })
     }
 
-    /// The readings, and how many are left out beyond the horizon.
+    /// The readings, and how many are left out because they are beyond the horizon.
     fn readings(
         &self,
         header: &Header,
@@ -146,7 +146,7 @@ impl Rows {
         let sigmas = self.sigmas.iter().copied().chain(std::iter::repeat(None));
         let mut readings = Vec::with_capacity(self.values.len());
         for ((directions, values), sigma) in self.directions.iter().zip(rows).zip(sigmas) {
-            let Some((psi, theta, phi)) = turned(*directions, unit, convention).in_model(unit)
+            let Some((psi, theta, phi)) = from_source(*directions, unit, convention).in_model(unit)
             else {
                 continue;
             };
@@ -165,8 +165,12 @@ impl Rows {
     }
 }
 
-/// With phi_s such that phi_s = phi_i is the source's side.
-fn turned(directions: TwoDirections, unit: AngleUnit, convention: Convention) -> TwoDirections {
+/// The directions with azimuths in which phi_s = phi_i is the source's side.
+fn from_source(
+    directions: TwoDirections,
+    unit: AngleUnit,
+    convention: Convention,
+) -> TwoDirections {
     match convention.phi_zero {
         Side::Source => directions,
         Side::Forward => TwoDirections {
@@ -176,10 +180,11 @@ fn turned(directions: TwoDirections, unit: AngleUnit, convention: Convention) ->
     }
 }
 
+/// The sentence that reports the convention of the azimuths.
 fn azimuth(convention: Convention) -> String {
-    let said = match convention.phi_zero {
+    let sentence = match convention.phi_zero {
         Side::Source => "azimuth is phi_s - phi_i, 0 on the source's side",
-        Side::Forward => "azimuth 0 is the forward side, turned by 180 deg",
+        Side::Forward => "azimuth 0 is the forward side: azimuths are rotated by 180 deg",
     };
-    said.to_owned()
+    sentence.to_owned()
 }

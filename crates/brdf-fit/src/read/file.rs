@@ -1,0 +1,111 @@
+//! Reading a file of any format.
+
+use std::fs::File;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+use super::error::ReadError;
+use super::options::ReadOptions;
+use super::text::{Text, read_bytes};
+use super::{astm, black_lab, csv, detect, goniometer, merl, zemax};
+use crate::scan::{Convention, Format, Measurements};
+
+impl Measurements {
+    /// Reads a file of any [`Format`].
+    ///
+    /// All readings of a MERL table take 210 MB of memory;
+    /// [`LazyScan::open`](super::LazyScan::open) reads one channel at a time.
+    ///
+    /// # Examples
+    ///
+    /// ```no_run
+    /// use brdf_fit::Measurements;
+    /// use brdf_fit::read::ReadOptions;
+    ///
+    /// let scan = Measurements::read("paint.bsdf", &ReadOptions::default())?;
+    /// for conversion in &scan.conversions {
+    ///     println!("{conversion}");
+    /// }
+    /// # Ok::<(), brdf_fit::read::ReadError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or is not a scan in the format that `options` give or that is
+    /// detected. Errors name the file and, where possible, the line, the column and the value, and
+    /// state what was expected.
+    pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Self, ReadError> {
+        let path = path.as_ref();
+        if detect::is_merl_file(path, options) {
+            return merl::read(merl::Table::open(path)?, options);
+        }
+        let io = |error| ReadError::io(path, error);
+        let mut file = File::open(path).map_err(io)?;
+        let size = file.metadata().map_err(io)?.len();
+        let mut head = Vec::new();
+        let mut beginning = file.by_ref().take(detect::HEAD);
+        beginning.read_to_end(&mut head).map_err(io)?;
+        let bytes = read_bytes(head, file, size).map_err(io)?;
+        from_bytes(path, &bytes, options)
+    }
+
+    /// Reads a stream of any [`Format`], such as standard input; `name` stands for the path of the
+    /// file in errors and reports.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read).
+    pub fn from_stream(
+        name: &str,
+        reader: impl Read,
+        options: &ReadOptions,
+    ) -> Result<Self, ReadError> {
+        let path = Path::new(name);
+        let bytes =
+            read_bytes(Vec::new(), reader, 0).map_err(|error| ReadError::io(path, error))?;
+        from_bytes(path, &bytes, options)
+    }
+
+    /// Reads the content of a file of any [`Format`]. `name` stands for the path of the file in
+    /// errors and reports, and in the detection of the format by the extension.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read).
+    pub fn from_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, ReadError> {
+        from_bytes(Path::new(name), bytes, options)
+    }
+}
+
+fn from_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
+    let known = options.format.or_else(|| Format::detect(bytes, path));
+    let format = known.unwrap_or_default();
+    if format == Format::Merl {
+        let name = path.display().to_string();
+        return merl::read(merl::Table::new(Cursor::new(bytes), &name)?, options);
+    }
+    let all = from_text(format, path, bytes, options).map_err(|error| match known {
+        Some(_) => error,
+        None => error.with_known_formats(),
+    })?;
+    Ok(match options.sample {
+        Some(count) => all.sampled(count),
+        None => all,
+    })
+}
+
+fn from_text(
+    format: Format,
+    path: &Path,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<Measurements, ReadError> {
+    let text = Text::new(path, bytes)?;
+    match format {
+        Format::Csv | Format::Merl => csv::read(text, options.convention(Convention::default())),
+        Format::Astm => astm::read(text, options),
+        Format::Zemax => zemax::read(text, options),
+        Format::BlackLab => black_lab::read(text, options),
+        Format::Goniometer => goniometer::read(text, options.convention(Convention::default())),
+    }
+}

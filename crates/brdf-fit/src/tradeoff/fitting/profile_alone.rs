@@ -51,7 +51,7 @@ pub(super) fn fit_by_profile(
     let objective = Objective::condensed(scan, model.family(), n, &options.weights)
         .map_err(|error| error.to_string())?;
     if !objective.suffices_for(model.free()) {
-        let count = objective.len() - objective.zero_weight();
+        let count = objective.count() - objective.zero_weight();
         let parameters = model.free().len();
         return Err(FitError::TooFewReadings { count, parameters }.to_string());
     }
@@ -152,6 +152,7 @@ mod tests {
 
     use super::*;
     use crate::model::{FixedParameters, Model};
+    use crate::objective::weights::Weights;
     use crate::scan::synthetic::scan;
 
     fn found(options: &FitOptions, depth: Depth) -> Result<Found, String> {
@@ -188,6 +189,22 @@ mod tests {
         assert!(found(&options, Depth::Grid).is_ok());
         let error = found(&options, Depth::Refined).unwrap_err();
         assert!(error.ends_with("n is free"), "{error}");
+    }
+
+    /// A table has fewer rows than readings; the error counts readings.
+    #[test]
+    fn a_table_with_too_few_weighted_readings_is_an_error_with_their_number() {
+        let mut table = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
+        table.incidence_class = Some(0.1);
+        let options = FitOptions {
+            weights: Weights {
+                mask_source: 149.9_f64.to_radians(),
+                ..Weights::default()
+            },
+            ..FitOptions::default()
+        };
+        let error = fit_by_profile(&table, &options, 1.5, Depth::Grid).unwrap_err();
+        assert_eq!(error, "1 reading: 3 free parameters need at least 4");
     }
 
     #[test]

@@ -3,8 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use brdf_fit::inference::assessment::{Assessment, Candidate};
-use brdf_fit::inference::uncertainty::{Estimate, Knowledge};
+use brdf_fit::inference::{Assessment, Candidate, Estimate, Knowledge};
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! The options of the program that say what a fit is worth.
+//! The options of the program `fit` for the assessment of a fit.
 
 use std::fs;
 use std::process::Output;
@@ -29,7 +29,7 @@ fn text(extra: &[&str]) -> String {
 }
 
 #[test]
-fn the_tables_hold_intervals_prediction_ladder_and_physics() {
+fn the_tables_contain_intervals_prediction_models_and_physics() {
     let text = text(&["--n", "1.5"]);
     for part in [
         "95 % over incidences",
@@ -46,7 +46,7 @@ fn the_tables_hold_intervals_prediction_ladder_and_physics() {
 }
 
 #[test]
-fn compare_adds_the_neighbours_and_a_line_for_each_model() {
+fn compare_adds_the_reference_models_and_a_line_for_each_model() {
     assert!(text(&["--n", "1.5", "--compare"]).contains("  ggx+n"));
     let csv = text(&["--n", "1.5", "--compare", "--params-only"]);
     let mut lines = csv.lines();
@@ -72,7 +72,7 @@ fn compare_adds_the_neighbours_and_a_line_for_each_model() {
 }
 
 #[test]
-fn a_model_can_be_chosen_by_name_or_by_the_data() {
+fn a_model_can_be_chosen_by_name_or_from_the_data() {
     let free = text(&["--model", "three+n", "--params-only"]);
     assert!(free.lines().nth(1).unwrap().contains(",three+n,"));
     assert!(text_of_three_n().contains("  three      not fitted: no refractive index"));
@@ -86,13 +86,13 @@ fn a_model_can_be_chosen_by_name_or_by_the_data() {
     assert!(String::from_utf8_lossy(&output.stderr).contains("\"phong\": expected one of lambert"));
 }
 
-/// Without a refractive index only the models that do not need one are fitted.
+/// Without a refractive index only the models that need none are fitted.
 fn text_of_three_n() -> String {
     text(&["--model", "three+n"])
 }
 
 #[test]
-fn robust_fits_list_what_they_reject() {
+fn robust_fits_list_the_readings_that_they_reject() {
     let folder = tempfile::tempdir().unwrap();
     let scan = folder.path().join("scan.csv");
     let mut lines = vec!["psi_deg,theta_deg,brdf_per_sr".to_owned()];
@@ -119,9 +119,9 @@ fn robust_fits_list_what_they_reject() {
     }
 }
 
-/// What the file says of its readings, n among it, stays with those that are not rejected.
+/// The statements of the file, such as n, also apply to the readings that are not rejected.
 #[test]
-fn a_robust_fit_takes_the_index_of_the_file_for_its_assessment_too() {
+fn the_assessment_of_a_robust_fit_takes_the_index_of_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let sample = in_workspace("data/synthetic/table1_003_0.91um_noise5.csv");
     let mut scan = fs::read_to_string(sample).unwrap();
@@ -143,7 +143,7 @@ fn a_robust_fit_takes_the_index_of_the_file_for_its_assessment_too() {
 }
 
 #[test]
-fn energy_is_conserved_where_asked_for() {
+fn energy_is_conserved_on_request() {
     let sample = in_workspace("data/synthetic");
     let file = fs::read_dir(sample)
         .unwrap()
@@ -168,7 +168,7 @@ fn energy_is_conserved_where_asked_for() {
 }
 
 #[test]
-fn masks_and_solid_angles_weigh_the_readings() {
+fn masks_and_solid_angles_weight_the_readings() {
     let text = text(&[
         "--n",
         "1.5",
@@ -182,11 +182,11 @@ fn masks_and_solid_angles_weigh_the_readings() {
     assert!(text.contains(
         "readings weighted by solid angle, 0 within 12 deg of the source, 0 within 2 deg of the mirror direction"
     ));
-    assert!(text.contains("with a weight of zero, without any say"));
+    assert!(text.contains("with a weight of zero, without influence on the fit"));
 }
 
 #[test]
-fn the_json_of_an_assessed_fit_reads_back() {
+fn the_json_of_an_assessed_fit_can_be_read() {
     let folder = tempfile::tempdir().unwrap();
     let json = folder.path().join("fit.json");
     text(&["--n", "1.5", "--compare", "--json", json.to_str().unwrap()]);
@@ -201,7 +201,7 @@ fn the_json_of_an_assessed_fit_reads_back() {
 }
 
 #[test]
-fn a_folder_of_pictures_has_a_page_that_needs_nothing_else() {
+fn a_folder_of_figures_has_a_self_contained_page() {
     let folder = tempfile::tempdir().unwrap();
     let plots = folder.path().join("new/plots");
     text(&["--n", "1.5", "--plot", plots.to_str().unwrap()]);
@@ -232,7 +232,7 @@ fn scan_file(folder: &std::path::Path, rows: impl Iterator<Item = (i32, i32, f64
     path.to_str().unwrap().to_owned()
 }
 
-/// A background taken off too much: the best Lambertian weight is 0, and no parameter is left.
+/// With too large a background subtracted the best Lambertian weight is 0, and no parameter is left.
 #[test]
 fn a_model_all_of_whose_parameters_are_on_their_bounds_does_not_panic() {
     let folder = tempfile::tempdir().unwrap();
@@ -260,7 +260,7 @@ fn a_model_all_of_whose_parameters_are_on_their_bounds_does_not_panic() {
 }
 
 #[test]
-fn tiny_scans_have_no_numbers_that_are_none() {
+fn tiny_scans_give_neither_nan_nor_infinity() {
     let folder = tempfile::tempdir().unwrap();
     for count in [2, 4, 5, 6] {
         let rows = (0..count).map(|i| (20 * (i % 3), 10 * i - 20, 0.1 + 0.03 * f64::from(i % 4)));
@@ -304,7 +304,7 @@ fn many_incidences_are_assessed_in_folds() {
 }
 
 #[test]
-fn the_page_of_the_pictures_is_not_written_over() {
+fn the_page_of_the_figures_is_not_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("report.html");
     let output = run(&[

@@ -4,9 +4,8 @@ use std::fmt::Write as _;
 
 use super::Report;
 use crate::fit::Fit;
-use crate::format::{counted, shortest};
-use crate::inference::assessment::{Assessment, Candidate};
-use crate::inference::uncertainty::{Estimate, Knowledge, Uncertainty, rounded};
+use crate::format::{counted, rounded, shortest};
+use crate::inference::{Assessment, Candidate, Estimate, Knowledge, Uncertainty};
 use crate::model::Parameter;
 use crate::plot::Figure;
 
@@ -184,7 +183,7 @@ fn parameters(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> Str
         let (value, reason) = match &estimate.knowledge {
             Knowledge::NotDetermined { reason, .. } => (String::new(), reason.clone()),
             Knowledge::OnBound { .. } => (estimate.to_string(), "on its bound".to_owned()),
-            Knowledge::Determined { .. } | Knowledge::HeldByEnergy => {
+            Knowledge::Determined { .. } | Knowledge::ConstrainedByEnergy => {
                 (estimate.to_string(), String::new())
             }
         };
@@ -202,7 +201,7 @@ fn parameters(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> Str
 
 fn incidences(fit: &Fit, assessment: Option<&Assessment>) -> String {
     let percent = |e: Option<f64>| e.map_or_else(|| "-".to_owned(), |e| format!("{e:.3}"));
-    let predicted = assessment.and_then(|a| a.prediction.as_ref());
+    let predicted = assessment.and_then(|a| a.cross_validation.as_ref());
     let mut rows: Vec<Vec<String>> = Vec::new();
     for (i, incidence) in fit.incidences.iter().enumerate() {
         let foreseen = predicted.and_then(|p| p.incidences.get(i)?.e_percent);

@@ -21,9 +21,9 @@ pub use text::Section;
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fit, FitError, FitOptions, fit_scan};
-use crate::inference::assessment::{Assessment, assess_observed, sufficient_model};
-use crate::inference::uncertainty::Uncertainty;
-use crate::inference::warning::{Warning, warnings};
+use crate::inference::{
+    Assessment, Uncertainty, Warning, assess_observed, sufficient_model, warnings,
+};
 use crate::model::Model;
 use crate::progress::{NoObserver, Observer, Phase, Progress};
 use crate::scan::{Convention, Format};
@@ -89,7 +89,7 @@ pub enum ModelChoice {
     /// That of the options.
     Given,
     /// The smallest of the ladder that predicts well enough: see
-    /// [`Verdict`](crate::inference::assessment::Verdict).
+    /// [`Verdict`](crate::inference::Verdict).
     Auto,
 }
 

@@ -7,9 +7,8 @@ use brdf_core::{ModelParameters, Parameters};
 use super::Report;
 use crate::fit::robust::REJECTED;
 use crate::fit::{Fit, Stage};
-use crate::format::{counted, digits, in_degrees, shortest};
-use crate::inference::assessment::{Assessment, Physics};
-use crate::inference::uncertainty::{Interval, Knowledge, Noise, Uncertainty, rounded};
+use crate::format::{counted, digits, in_degrees, rounded, shortest};
+use crate::inference::{Assessment, Interval, Knowledge, Noise, Physics, Uncertainty};
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::objective::MOST_FOLDS;
 use crate::scan::Convention;
@@ -240,7 +239,7 @@ fn incidence_table(fit: &Fit, assessment: Option<&Assessment>) -> String {
         text += &row("E %", &|i| {
             chunk[i].e_percent.map_or_else(|| "-".to_owned(), digits)
         });
-        if let Some(prediction) = assessment.and_then(|a| a.prediction.as_ref()) {
+        if let Some(prediction) = assessment.and_then(|a| a.cross_validation.as_ref()) {
             let predicted = prediction.incidences.get(row_start..).unwrap_or_default();
             text += &row("predicted", &|i| {
                 let e = predicted.get(i).and_then(|incidence| incidence.e_percent);
@@ -371,7 +370,7 @@ fn parameter_table(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -
                     ""
                 )
             }
-            Knowledge::HeldByEnergy => {
+            Knowledge::ConstrainedByEnergy => {
                 writeln!(
                     text,
                     "  {name:<9}{:>13}  held by rho <= 1",
@@ -444,7 +443,7 @@ fn prediction_line(fit: &Fit, assessment: &Assessment) -> String {
             "\n  the {incidences} incidences are left out several at a time, in {MOST_FOLDS} folds"
         );
     }
-    let _ = match &assessment.prediction {
+    let _ = match &assessment.cross_validation {
         Some(prediction) => writeln!(
             text,
             "\n  prediction of each incidence from the others: E = {} % (the fit: {} %)",

@@ -30,7 +30,7 @@ use brdf_core::ModelParameters;
 use serde::Serialize;
 
 use crate::fit::{Fitted, ROUNDING, fit_scan};
-use crate::inference::uncertainty::{Estimate, Uncertainty};
+use crate::inference::{Estimate, Uncertainty};
 use crate::model::Parameter;
 use crate::objective::Objective;
 use crate::progress::{NoObserver, Phase, Progress};

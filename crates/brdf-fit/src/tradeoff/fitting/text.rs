@@ -3,8 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{Alternative, FitTrade, Measured, OfParameter, Outcome};
-use crate::format::{counted, digits};
-use crate::inference::uncertainty::rounded;
+use crate::format::{counted, digits, rounded};
 
 /// Shifts from here on are written with a power of ten.
 const FAR: f64 = 1e4;

@@ -1,5 +1,5 @@
-//! The program `trade` as its user meets it. What it measures differs from machine to machine: only
-//! facts are tested, no speed.
+//! The program `trade`. Its measurements differ from machine to machine: only facts are tested, no
+//! times.
 
 use std::fs;
 use std::path::Path;
@@ -138,7 +138,7 @@ fn the_model_of_a_fit_is_measured() {
 }
 
 #[test]
-fn a_tolerance_that_nothing_meets_is_status_one_with_the_best() {
+fn a_tolerance_that_no_evaluator_meets_is_status_one_with_the_best() {
     let output = run(&["--tolerance", "1e-30", "--memory", "0.1"]);
     assert_eq!(output.status.code(), Some(1));
     let text = stdout(&output);
@@ -150,7 +150,7 @@ fn a_tolerance_that_nothing_meets_is_status_one_with_the_best() {
 }
 
 #[test]
-fn bad_usage_is_named() {
+fn bad_usage_is_reported() {
     let missing = in_workspace("no/such/fit.json");
     let scan = z307();
     for (arguments, message) in [

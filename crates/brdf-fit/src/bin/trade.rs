@@ -13,8 +13,10 @@ use brdf_fit::output::{self, check_outputs, print_error, write_file, write_json}
 use brdf_fit::plot::{Figure, PlotError};
 use brdf_fit::read::{ReadError, ReadOptions, Scan};
 use brdf_fit::report::Document;
-use brdf_fit::tradeoff::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
-use brdf_fit::tradeoff::fitting::{FitTrade, trade_fits, write_fit_trades};
+use brdf_fit::tradeoff::evaluators::{
+    EvaluatorTradeoff, evaluator_tradeoff, write_evaluator_tradeoff,
+};
+use brdf_fit::tradeoff::fitting::{FitTradeoff, fit_tradeoff, write_fit_tradeoffs};
 use brdf_fit::{FitOptions, RefractiveIndex};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use serde::Serialize;
@@ -221,9 +223,9 @@ fn compare_evaluators(evaluation: &Evaluation, outputs: &Outputs) -> Outcome {
     outputs.check(evaluation.model.as_deref())?;
     let (name, brdf) = evaluation.brdf().map_err(|message| vec![message])?;
     let scene = evaluation.scene().map_err(|message| vec![message])?;
-    let trade: EvaluatorTrade = trade_evaluators(&name, &brdf, &scene);
+    let trade: EvaluatorTradeoff = evaluator_tradeoff(&name, &brdf, &scene);
     let figures = [(None, trade.figure())];
-    let csv = |writer: &mut dyn Write| write_evaluator_trade(&trade, writer);
+    let csv = |writer: &mut dyn Write| write_evaluator_tradeoff(&trade, writer);
     outputs.deliver(&trade.text(), &trade, csv, figures)?;
     Ok(trade.plan.is_some())
 }
@@ -287,10 +289,10 @@ fn compare_fits(fitting: &Fitting) -> Outcome {
         refractive_index: fitting.n.clone(),
         ..FitOptions::default()
     };
-    let mut trades: Vec<FitTrade> = Vec::new();
+    let mut trades: Vec<FitTradeoff> = Vec::new();
     let mut failed = false;
     for scan in scans {
-        match trade_fits(&*scan.measurements().map_err(read)?, &options) {
+        match fit_tradeoff(&*scan.measurements().map_err(read)?, &options) {
             Ok(trade) => trades.push(trade),
             Err(error) if error.is_usage() => {
                 return Err(vec![format!("{}: {error}", fitting.file.display())]);
@@ -301,12 +303,12 @@ fn compare_fits(fitting: &Fitting) -> Outcome {
             }
         }
     }
-    let texts: Vec<String> = trades.iter().map(FitTrade::text).collect();
+    let texts: Vec<String> = trades.iter().map(FitTradeoff::text).collect();
     let several = trades.len() > 1;
     let figures = trades
         .iter()
         .map(|trade| (trade.wavelength_um.filter(|_| several), trade.figure()));
-    let csv = |writer: &mut dyn Write| write_fit_trades(&trades, writer);
+    let csv = |writer: &mut dyn Write| write_fit_tradeoffs(&trades, writer);
     fitting
         .outputs
         .deliver(&texts.join("\n"), &trades, csv, figures)?;

@@ -1,5 +1,5 @@
-//! The trade of evaluation: what each way to evaluate a BRDF takes, how far it errs, what memory it
-//! needs, over the directions of a scene and on the machine at hand.
+//! The trade-off of evaluation: time, errors and memory of each way to evaluate a BRDF, over the
+//! directions of a scene and on this machine.
 
 use std::fmt::Write as _;
 use std::io;
@@ -12,74 +12,74 @@ use brdf_core::scene::{
 use serde::Serialize;
 
 use super::pareto::pareto;
-use super::picture::{TradePoint, picture};
 use crate::format::{counted, in_degrees};
-use crate::plot::{Figure, PlotError};
+use crate::plot::{Figure, PlotError, TradePoint, trade_picture};
 
-/// What [`AnyBrdf::value`] is called, point after point.
+/// The name of evaluation point by point with [`AnyBrdf::value`], the reference for times and errors.
 pub const SINGLE_VALUES: &str = "value";
 
-/// Ways to evaluate a BRDF, compared for a scene.
+/// A comparison of the ways to evaluate a BRDF for a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EvaluatorTrade {
-    /// What the BRDF is of.
+pub struct EvaluatorTradeoff {
+    /// The name of what the BRDF belongs to.
     pub of: String,
     /// The BRDF.
     pub brdf: AnyBrdf,
     /// The scene.
     pub scene: Scene,
-    /// The widest vectors of the processor.
+    /// The widest vector unit of the processor.
     pub vector_unit: &'static str,
-    /// Threads of the pool.
+    /// The number of threads of the current rayon pool.
     pub threads: usize,
-    /// What was measured.
+    /// The measurements, that of single values first.
     pub evaluators: Vec<MeasuredEvaluator>,
-    /// Evaluators that could not be made, or are not for this scene.
+    /// The evaluators that cannot be made for this BRDF and scene.
     pub not_made: Vec<NotMade>,
-    /// The name of the evaluator that the plan takes; `None` where none is within the tolerance.
+    /// The name of the evaluator that the plan chooses; `None` where none is within the tolerance.
     pub plan: Option<&'static str>,
-    /// Why there is none.
+    /// Why the plan chooses none.
     pub no_plan: Option<String>,
 }
 
-/// What was measured of one evaluator. Errors are relative, against the value of the single point.
+/// The measurement of one evaluator. Errors are relative to single values.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredEvaluator {
-    /// What it is called.
+    /// The name of the evaluator.
     pub name: &'static str,
-    /// By one thread, arrays in the caches.
+    /// Nanoseconds for each evaluation on one thread, with arrays in the caches.
     pub ns_per_evaluation: f64,
-    /// By all threads, arrays in memory; `None` of single values.
+    /// Nanoseconds for each evaluation on all threads, with arrays in memory; `None` for single
+    /// values.
     pub ns_per_evaluation_all_threads: Option<f64>,
-    /// How many times as fast as single values, by one thread.
+    /// The time of single values over that of the evaluator, on one thread.
     pub times_as_fast: f64,
     /// The largest error.
     pub max_relative_error: f64,
-    /// 99 of 100 errors are not larger.
+    /// The 99th percentile of the errors.
     pub p99_relative_error: f64,
-    /// Root mean square.
+    /// The root mean square of the errors.
     pub rms_relative_error: f64,
-    /// What it took to be made.
+    /// The time to make the evaluator, in seconds.
     pub build_seconds: f64,
-    /// Its memory.
+    /// The memory of the evaluator.
     pub bytes: usize,
-    /// Whether no other one is faster without a larger error.
+    /// Whether the evaluator is on the Pareto front of time and largest error.
     pub pareto: bool,
-    /// Why the plan does not take it; `None` of the one that it takes.
+    /// Why the plan does not choose the evaluator; `None` for the one that it chooses.
     pub refusal: Option<String>,
 }
 
-/// An evaluator that was not measured.
+/// An evaluator that cannot be made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NotMade {
-    /// What it is called.
+    /// The name of the evaluator.
     pub name: &'static str,
     /// Why.
     pub reason: String,
 }
 
-/// The columns of [`write_evaluator_trade`].
-pub const EVALUATOR_TRADE_COLUMNS: [&str; 11] = [
+/// The header of the CSV of [`write_evaluator_tradeoff`].
+pub const EVALUATOR_TRADEOFF_COLUMNS: [&str; 11] = [
     "name",
     "ns_per_evaluation",
     "ns_per_evaluation_all_threads",
@@ -93,8 +93,9 @@ pub const EVALUATOR_TRADE_COLUMNS: [&str; 11] = [
     "plan",
 ];
 
-/// Measures every evaluator of a BRDF for a scene. Takes a second or so, more where tables are large.
-pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTrade {
+/// Measures every evaluator of a BRDF for a scene; `of` names the BRDF. This takes about a second, and
+/// longer where tables are large.
+pub fn evaluator_tradeoff(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTradeoff {
     let survey = Survey::new(brdf, scene);
     let probe = Probe::new(brdf, &scene.domain, scene.coordinates, TIMED, 1);
     let single = cost_of_single_values(brdf, &probe);
@@ -116,7 +117,7 @@ pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTra
     for (evaluator, on_front) in evaluators.iter_mut().zip(pareto(&choices)) {
         evaluator.pareto = on_front;
     }
-    EvaluatorTrade {
+    EvaluatorTradeoff {
         of: of.to_owned(),
         brdf: *brdf,
         scene: *scene,
@@ -129,7 +130,7 @@ pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTra
     }
 }
 
-/// The single values are what the others are compared with: they have no error.
+/// Single values are the reference and have no error.
 fn single_values(nanoseconds: f64) -> MeasuredEvaluator {
     MeasuredEvaluator {
         name: SINGLE_VALUES,
@@ -142,7 +143,7 @@ fn single_values(nanoseconds: f64) -> MeasuredEvaluator {
         build_seconds: 0.0,
         bytes: 0,
         pareto: false,
-        refusal: Some("is what the others are measured by, one point after the other".to_owned()),
+        refusal: Some("is the reference for times and errors, point by point".to_owned()),
     }
 }
 
@@ -167,14 +168,14 @@ fn reason(candidate: &Candidate) -> Option<String> {
     candidate.refusal.as_ref().map(ToString::to_string)
 }
 
-impl EvaluatorTrade {
-    /// The table that a person reads.
+impl EvaluatorTradeoff {
+    /// The table as text: a heading, and a line for each evaluator.
     pub fn text(&self) -> String {
         let mut text = self.heading();
         let _ = writeln!(
             text,
             "  {:<20}{:>8}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}",
-            "", "ns", "ns, all", "times", "max", "99 %", "rms", "made in", "bytes"
+            "", "ns", "ns, all", "times", "max", "99 %", "rms", "build", "bytes"
         );
         let _ = writeln!(
             text,
@@ -187,9 +188,9 @@ impl EvaluatorTrade {
         for NotMade { name, reason } in &self.not_made {
             let _ = writeln!(text, "  {name:<20}  {reason}");
         }
-        text += "  (*: Pareto front, none is faster with no larger error; errors relative, against \
-                 single values; times as fast\n  as single values; 1 thread: arrays in the caches, \
-                 all threads: a million points in memory)\n";
+        text += "  (*: on the Pareto front, no evaluator is faster without a larger error; errors are \
+                 relative to single\n  values; times as fast as single values; 1 thread: arrays in \
+                 the caches, all threads: a million points\n  in memory)\n";
         match (self.plan, &self.no_plan) {
             (Some(plan), _) => {
                 let _ = writeln!(text, "  plan: {plan}");
@@ -259,7 +260,11 @@ impl EvaluatorTrade {
         line + "\n"
     }
 
-    /// Error against time, both logarithmic; the plan's choice is marked.
+    /// Largest error against time on logarithmic axes. The choice of the plan is marked.
+    ///
+    /// # Errors
+    ///
+    /// The figure cannot be drawn.
     pub fn figure(&self) -> Result<Figure, PlotError> {
         let point = |evaluator: &MeasuredEvaluator| TradePoint {
             label: evaluator.name.to_owned(),
@@ -269,7 +274,7 @@ impl EvaluatorTrade {
             chosen: self.plan == Some(evaluator.name),
         };
         let points: Vec<TradePoint> = self.evaluators.iter().map(point).collect();
-        picture(
+        trade_picture(
             &points,
             "time of an evaluation on one thread / ns",
             "largest relative error",
@@ -286,11 +291,18 @@ fn error(error: f64) -> String {
     }
 }
 
-/// Writes a trade as CSV, a line for each evaluator that was measured.
-pub fn write_evaluator_trade(trade: &EvaluatorTrade, writer: impl io::Write) -> io::Result<()> {
+/// Writes a trade-off as CSV, one line for each evaluator that is measured.
+///
+/// # Errors
+///
+/// The writer fails.
+pub fn write_evaluator_tradeoff(
+    tradeoff: &EvaluatorTradeoff,
+    writer: impl io::Write,
+) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
-    csv.write_record(EVALUATOR_TRADE_COLUMNS)?;
-    for e in &trade.evaluators {
+    csv.write_record(EVALUATOR_TRADEOFF_COLUMNS)?;
+    for e in &tradeoff.evaluators {
         let all = e.ns_per_evaluation_all_threads;
         csv.write_record([
             e.name.to_owned(),
@@ -303,7 +315,7 @@ pub fn write_evaluator_trade(trade: &EvaluatorTrade, writer: impl io::Write) -> 
             e.build_seconds.to_string(),
             e.bytes.to_string(),
             e.pareto.to_string(),
-            (trade.plan == Some(e.name)).to_string(),
+            (tradeoff.plan == Some(e.name)).to_string(),
         ])?;
     }
     csv.flush()
@@ -316,7 +328,7 @@ mod tests {
 
     use super::*;
 
-    fn trade(tolerance: f64) -> EvaluatorTrade {
+    fn tradeoff(tolerance: f64) -> EvaluatorTradeoff {
         let parameters = Parameters::new(0.3, 0.1, 0.2).unwrap();
         let brdf = ThreeParameterBrdf::new(parameters, 1.5).unwrap();
         let scene = Scene {
@@ -325,36 +337,36 @@ mod tests {
             memory_limit: 1 << 20,
             ..Scene::default()
         };
-        trade_evaluators("a coating", &AnyBrdf::Paper(brdf), &scene)
+        evaluator_tradeoff("a sample", &AnyBrdf::Paper(brdf), &scene)
     }
 
     #[test]
-    fn everything_is_measured_or_has_its_reason() {
-        let trade = trade(1e-3);
-        assert_eq!(trade.evaluators.len() + trade.not_made.len(), 9);
-        assert!(trade.not_made.iter().all(|e| !e.reason.is_empty()));
-        let plan = trade.plan.unwrap();
-        let chosen = trade.evaluators.iter().find(|e| e.name == plan).unwrap();
+    fn every_evaluator_is_measured_or_has_a_reason() {
+        let tradeoff = tradeoff(1e-3);
+        assert_eq!(tradeoff.evaluators.len() + tradeoff.not_made.len(), 9);
+        assert!(tradeoff.not_made.iter().all(|e| !e.reason.is_empty()));
+        let plan = tradeoff.plan.unwrap();
+        let chosen = tradeoff.evaluators.iter().find(|e| e.name == plan).unwrap();
         assert!(chosen.max_relative_error <= 1e-3 && chosen.refusal.is_none());
-        for e in &trade.evaluators {
+        for e in &tradeoff.evaluators {
             assert!(e.ns_per_evaluation > 0.0 && e.p99_relative_error <= e.max_relative_error);
             assert_eq!(e.refusal.is_none(), e.name == plan);
         }
-        let front: Vec<_> = trade.evaluators.iter().filter(|e| e.pareto).collect();
-        // The fastest and the most accurate one are always on it.
+        let front: Vec<_> = tradeoff.evaluators.iter().filter(|e| e.pareto).collect();
+        // The fastest and the most accurate evaluator are always on it.
         assert!(front.len() >= 2 && front.iter().any(|e| e.max_relative_error == 0.0));
-        let text = trade.text();
+        let text = tradeoff.text();
         assert!(text.contains("<- plan") && text.contains(&format!("plan: {plan}")));
     }
 
     #[test]
-    fn csv_and_json_hold_the_same_numbers() {
-        let trade = trade(1e-3);
+    fn csv_and_json_contain_the_same_numbers() {
+        let tradeoff = tradeoff(1e-3);
         let mut bytes = Vec::new();
-        write_evaluator_trade(&trade, &mut bytes).unwrap();
+        write_evaluator_tradeoff(&tradeoff, &mut bytes).unwrap();
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-        let json = serde_json::to_value(&trade).unwrap();
+        let json = serde_json::to_value(&tradeoff).unwrap();
         assert_eq!(rows.len(), json["evaluators"].as_array().unwrap().len());
         for (row, e) in rows.iter().zip(json["evaluators"].as_array().unwrap()) {
             assert_eq!(&row[0], e["name"].as_str().unwrap());
@@ -364,9 +376,9 @@ mod tests {
     }
 
     #[test]
-    fn a_tolerance_that_nothing_meets_is_said() {
-        let trade = trade(1e-30);
-        assert_eq!(trade.plan, None);
-        assert!(trade.text().contains("no plan: no evaluator is within"));
+    fn a_tolerance_that_no_evaluator_meets_is_reported() {
+        let tradeoff = tradeoff(1e-30);
+        assert_eq!(tradeoff.plan, None);
+        assert!(tradeoff.text().contains("no plan: no evaluator is within"));
     }
 }

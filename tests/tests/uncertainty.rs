@@ -1,10 +1,10 @@
-//! The stated uncertainties against what they promise: intervals of simulated scans cover the
-//! truth, and on measured scans they stand beside the bootstrap over incidences.
+//! The coverage of the confidence intervals over simulated scans, and their ratio to the bootstrap
+//! over incidences on measured scans.
 
 use brdf_core::published::PUBLISHED;
 use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
 use brdf_fit::fit::robust::Loss;
-use brdf_fit::inference::uncertainty::Knowledge;
+use brdf_fit::inference::Knowledge;
 use brdf_fit::model::Parameter;
 use brdf_fit::objective::weights::Weights;
 use brdf_fit::report::{Depth, Report};
@@ -30,8 +30,8 @@ fn truth_of(truth: &Parameters, parameter: Parameter) -> f64 {
     }
 }
 
-/// How often the 68 and 95 % intervals of k2, kD and k1 hold the truth, in percent, over scans
-/// whose readings `disturb` changes.
+/// How often the 68 and 95 % intervals of k2, kD and k1 contain the truth, in percent, over scans
+/// whose readings `disturb` changes by a normal deviate.
 fn coverage(
     truth: Parameters,
     n: f64,
@@ -76,7 +76,7 @@ fn check(name: &str, coverage: [[f64; 2]; 3]) {
     }
 }
 
-/// Errors of f cos theta that are alike for all readings, as the intervals assume.
+/// Errors of f cos theta with the same variance for all readings, as the intervals assume.
 #[test]
 fn intervals_from_the_residuals_cover_the_truth() {
     let row = PUBLISHED[4];
@@ -88,7 +88,7 @@ fn intervals_from_the_residuals_cover_the_truth() {
     );
 }
 
-/// Errors of 5 % of each reading, stated in the scan and taken as weights.
+/// Errors of 5 % of each reading, stated in the scan and used as weights.
 #[test]
 fn intervals_from_stated_errors_cover_the_truth() {
     let row = PUBLISHED[4];
@@ -107,7 +107,7 @@ fn intervals_from_stated_errors_cover_the_truth() {
     check("stated", coverage(row.parameters, row.n, &options, noise));
 }
 
-/// The band of a theory curve is the spread of that curve over simulated scans.
+/// The band of a theory curve is the standard deviation of that curve over simulated scans.
 #[test]
 fn the_band_is_the_spread_of_the_curve() {
     let row = PUBLISHED[4];
@@ -136,10 +136,10 @@ fn the_band_is_the_spread_of_the_curve() {
     assert!((0.9..1.1).contains(&ratio), "{ratio}");
 }
 
-/// On real samples the model errs systematically, so that other incidences would give other
-/// parameters: the bootstrap says by how much more than the residuals do.
+/// On real samples the model has systematic errors, so that the parameters depend on which incidences
+/// were measured: the bootstrap shows a larger spread than the residuals do.
 #[test]
-fn the_bootstrap_over_incidences_stands_beside_the_intervals() {
+fn the_bootstrap_over_incidences_contains_the_fit() {
     let table = expected_optima(&in_workspace("tests/data/measured_optima.csv"));
     for row in table {
         let path = in_workspace("data/measured").join(&row.file);
@@ -163,7 +163,7 @@ fn the_bootstrap_over_incidences_stands_beside_the_intervals() {
     }
 }
 
-/// The weights of a robust loss follow the residuals; the intervals know of that.
+/// The weights of a robust loss depend on the residuals; the intervals account for that.
 #[test]
 fn intervals_of_robust_fits_cover_the_truth() {
     let row = PUBLISHED[4];

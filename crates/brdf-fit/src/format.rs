@@ -57,6 +57,22 @@ pub fn digits(value: f64) -> String {
     }
 }
 
+/// A number to two significant digits of its error, with at most 8 decimals; in scientific notation
+/// where the number is below 1e-4 and would need more.
+pub fn rounded(value: f64, error: f64) -> String {
+    if !(error > 0.0 && error.is_finite() && value.is_finite()) {
+        return format!("{value}");
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "an exponent of ten")]
+    let decimals = (1.0 - error.log10().floor()) as i64;
+    let decimals = usize::try_from(decimals).unwrap_or(0);
+    if decimals <= 8 || value.abs() >= 1e-4 {
+        format!("{value:.*}", decimals.min(8))
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
 /// An angle in degrees, from radians, rounded so that an angle that was given in degrees is
 /// recovered exactly.
 pub fn in_degrees(radians: f64) -> f64 {
@@ -112,6 +128,14 @@ mod tests {
         assert_eq!(digits(-2.839_658), "-2.83966");
         assert_eq!(digits(123_456_789.0), "1.23457e8");
         assert_eq!(digits(1.5e-9), "1.50000e-9");
+    }
+
+    #[test]
+    fn numbers_have_two_digits_of_their_error() {
+        assert_eq!(rounded(0.022_859_766, 0.000_5), "0.02286");
+        assert_eq!(rounded(1870.3, 20.0), "1870");
+        assert_eq!(rounded(0.156, 1e-17), "0.15600000");
+        assert_eq!(rounded(1.5e-9, 1e-11), "1.500e-9");
     }
 
     #[test]

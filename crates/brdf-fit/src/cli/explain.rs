@@ -5,9 +5,10 @@ use std::fmt::Display;
 
 use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
-use crate::inference::warning::Warning;
+use crate::inference::Warning;
 use crate::objective::ObjectiveError;
 use crate::report::DocumentError;
+use crate::tradeoff::fitting::TradeoffError;
 
 /// A message with a hint behind it, unless the message contains the hint's first option.
 fn with_hint(message: impl Display, hint: &str) -> String {
@@ -40,6 +41,14 @@ pub(super) fn fit(error: &FitError) -> String {
         _ => return error.to_string(),
     };
     with_hint(error, hint)
+}
+
+/// Why the ways to fit a scan cannot be compared.
+pub(super) fn tradeoff(error: &TradeoffError) -> String {
+    match error {
+        TradeoffError::Fit(error) => fit(error),
+        _ => error.to_string(),
+    }
 }
 
 /// Why the result of an earlier run cannot be read.
@@ -92,7 +101,7 @@ pub(super) fn export(error: &ExportError) -> String {
 /// What the user of a fit should know about it.
 pub(super) fn warning(warning: &Warning) -> String {
     match warning {
-        Warning::TurnedRound { .. } => with_hint(
+        Warning::ThetaReversed { .. } => with_hint(
             warning,
             "--theta-positive forward, or --phi-zero forward, reads it so",
         ),
@@ -146,7 +155,7 @@ mod tests {
 
     #[test]
     fn the_warnings_of_a_report_name_the_option() {
-        let turned = Warning::TurnedRound { e_percent: 2.0 };
+        let turned = Warning::ThetaReversed { e_percent: 2.0 };
         let text = report(format!("  warning: {turned}\n"), &[turned]);
         assert!(text.contains("--theta-positive forward"), "{text}");
     }

@@ -15,6 +15,7 @@ use crate::plot::FolderError;
 use crate::plot::PlotError;
 use crate::read::ReadError;
 use crate::report::DocumentError;
+use crate::tradeoff::fitting::TradeoffError;
 
 /// Why a command failed, or one of its outputs.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +46,8 @@ pub(super) enum Failure {
     Export(#[from] ExportError),
     #[error("{}", explain::fit(.0))]
     Fit(#[from] FitError),
+    #[error("{}", explain::tradeoff(.0))]
+    Tradeoff(#[from] TradeoffError),
     /// A failure that concerns one file, or one wavelength of it.
     #[error("{place}: {failure}")]
     At { place: String, failure: Box<Self> },

@@ -232,6 +232,11 @@ impl<'a> FitProblem<'a> {
         })
     }
 
+    /// The grid search over the readings that the fit is of.
+    pub(crate) fn grid_search(&self, progress: &Progress<'_>) -> Result<GridSearch, Cancelled> {
+        GridSearch::new(self.objective(), self.model, progress)
+    }
+
     /// E over the readings of the first stage.
     fn first_objective(&self) -> &Objective {
         self.first_stage.objective.as_ref().unwrap_or(&self.all)

@@ -1,61 +1,57 @@
-//! How well a fit predicts what was not measured: each incidence from the others, and the spread of
-//! the parameters had other incidences been measured.
+//! Leave-one-incidence-out cross-validation: how well the model predicts incidences that it was not
+//! fitted to.
 
 use brdf_core::ModelParameters;
-use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
 use serde::{Deserialize, Serialize};
 
-use crate::fit::grid_search::GridSearch;
-use crate::model::{Parameter, ReducedModel};
-use crate::objective::{IncidenceError, Objective};
-use crate::progress::{Cancelled, Progress};
-use crate::solver::{polish, unless_cancelled};
+use super::refit::Refitter;
+use crate::objective::IncidenceError;
+use crate::progress::Cancelled;
 
-/// Resamples of the bootstrap: the ends of its 95 % interval are the 6th and the 195th.
-pub const RESAMPLES: usize = 200;
-
-/// The bootstrap draws the same resamples in every run.
-const SEED: u64 = 2002;
-
-/// The prediction of each incidence from the others.
+/// The prediction of each incidence from a fit of the other incidences.
+///
+/// Each incidence is left out once, the model is fitted to the others, and the left-out readings
+/// are compared with the prediction. The E of all predictions,
+///
+/// ```text
+/// E = sum over incidences |y_i - f(fit of the others)_i|^2 / sum over incidences |y_i|^2,
+/// ```
+///
+/// estimates the error of the model at incidences that were not measured. It assumes that the
+/// incidences are independent of each other, not that the readings of one incidence are. (Stone,
+/// "Cross-validatory choice and assessment of statistical predictions", Journal of the Royal
+/// Statistical Society B 36, 111, 1974.)
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Prediction {
-    /// E of the prediction of each incidence; `None` where the others do not suffice for a fit, or
-    /// all its readings are zero.
+pub struct CrossValidation {
+    /// E of the prediction of each incidence; `None` where the other incidences do not suffice for
+    /// a fit, and where all readings of the incidence are zero.
     pub incidences: Vec<IncidenceError>,
-    /// E of all predictions together, in percent: the sum of their squared errors over that of the
-    /// readings that were predicted.
+    /// E of all predictions, in percent.
     pub e_percent: f64,
 }
 
-impl Prediction {
-    /// How many incidences could be predicted.
+impl CrossValidation {
+    /// The number of incidences that are predicted.
     pub fn count(&self) -> usize {
         let predicted = |incidence: &&IncidenceError| incidence.e_percent.is_some();
         self.incidences.iter().filter(predicted).count()
     }
 }
 
-/// Predicts each incidence from a fit of the others; `None` where there is but one incidence.
+/// Predicts each incidence from a fit of the others; `None` where nothing can be predicted, as with
+/// a single incidence.
 ///
-/// More than [`MOST_FOLDS`](crate::objective::MOST_FOLDS) incidences are left out several at a
-/// time, in that many folds. Each fit starts from the lowest point of the search over its own
-/// incidences, and from the fit of all; the lower minimum counts.
-pub(crate) fn leave_one_out(
-    objective: &Objective,
-    search: &GridSearch,
-    model: ReducedModel,
-    at: &ModelParameters,
-    progress: &Progress<'_>,
-) -> Result<Option<Prediction>, Cancelled> {
-    let segments = objective.segments();
-    let (mut above, mut below) = (0.0, 0.0);
+/// More than [`MOST_FOLDS`](crate::objective::MOST_FOLDS) incidences are left out in that many
+/// folds of several incidences each.
+pub(super) fn leave_one_out(refitter: &Refitter<'_>) -> Result<Option<CrossValidation>, Cancelled> {
+    let objective = refitter.objective;
     let folds = objective.folds();
     let fits: Vec<Option<ModelParameters>> = (0..folds)
-        .map(|fold| fit_of_others(objective, search, model, at, fold, progress))
+        .map(|fold| fit_without(refitter, fold))
         .collect::<Result<_, _>>()?;
-    let incidences = segments.iter().enumerate().map(|(i, segment)| {
+    let (mut above, mut below) = (0.0, 0.0);
+    let segments = objective.segments().iter().enumerate();
+    let incidences = segments.map(|(i, segment)| {
         let others = fits[i % folds].as_ref();
         let sums = others.map(|others| objective.squares_of(others, segment));
         if let Some((errors, readings)) = sums {
@@ -67,126 +63,59 @@ pub(crate) fn leave_one_out(
         IncidenceError::new(segment, sums.map(percent))
     });
     let incidences = incidences.collect();
-    Ok((below > 0.0).then(|| Prediction {
+    Ok((below > 0.0).then(|| CrossValidation {
         incidences,
         e_percent: 100.0 * above / below,
     }))
 }
 
-/// The parameters of a fit of all incidences but those of one fold.
-fn fit_of_others(
-    objective: &Objective,
-    search: &GridSearch,
-    model: ReducedModel,
-    at: &ModelParameters,
+/// The parameters of a fit of all incidences except those of one fold; `None` where the others do
+/// not suffice.
+///
+/// The minimiser starts from the lowest grid point of those incidences and from the fit of all
+/// incidences; the lower of the two minima is taken.
+fn fit_without(
+    refitter: &Refitter<'_>,
     left_out: usize,
-    progress: &Progress<'_>,
 ) -> Result<Option<ModelParameters>, Cancelled> {
-    progress.advance()?;
-    let folds = objective.folds();
-    let others = objective.subset(|i| i % folds != left_out).ok();
-    let Some(others) = others.filter(|others| others.suffices_for(model.free())) else {
+    refitter.advance()?;
+    let folds = refitter.objective.folds();
+    let others = refitter.objective.subset(|i| i % folds != left_out).ok();
+    let Some(others) = others.filter(|others| others.suffices_for(refitter.free())) else {
         return Ok(None);
     };
-    let lowest = search
-        .profile(|i| if i == left_out { 0.0 } else { 1.0 })
-        .lowest();
-    let mut ends = Vec::with_capacity(2);
-    for start in [lowest.parameters, *at] {
-        ends.extend(unless_cancelled(polish(
-            &others,
-            start,
-            model.free(),
-            progress,
-        ))?);
+    let lowest = refitter.lowest(|fold| if fold == left_out { 0.0 } else { 1.0 });
+    let mut minima = Vec::with_capacity(2);
+    for start in [lowest, refitter.at] {
+        minima.extend(refitter.minimum(&others, start)?);
     }
-    let best =
+    let by_error =
         |a: &ModelParameters, b: &ModelParameters| others.error(a).total_cmp(&others.error(b));
-    Ok(ends.into_iter().min_by(best))
+    Ok(minima.into_iter().min_by(by_error))
 }
 
-/// The spread of a parameter over the resamples.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
-    /// The parameter.
-    pub parameter: Parameter,
-    /// Standard deviation.
-    pub standard_deviation: f64,
-    /// The ends between which 95 % of the resamples lie.
-    pub from: f64,
-    /// Upper end.
-    pub to: f64,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fit::fit_scan;
+    use crate::inference::test_scans::{options, rippled};
+    use crate::progress::{NoObserver, Phase, Progress};
 
-/// Fits [`RESAMPLES`] sets of as many incidences as there are, drawn with repetition from them: the
-/// bootstrap over incidences, which knows that the readings of one incidence err together. More than
-/// [`MOST_FOLDS`](crate::objective::MOST_FOLDS) incidences are drawn several at a time. Empty where
-/// there are fewer than 3.
-pub(crate) fn bootstrap(
-    objective: &Objective,
-    search: &GridSearch,
-    model: ReducedModel,
-    at: &ModelParameters,
-    progress: &Progress<'_>,
-) -> Result<Vec<Spread>, Cancelled> {
-    let count = objective.folds();
-    if count < 3 {
-        return Ok(Vec::new());
+    #[test]
+    fn the_prediction_of_an_incidence_is_the_fit_of_the_scan_without_it() {
+        let scan = rippled([0.3, 0.1, 0.2], 1.5, 0.02);
+        let fitted = fit_scan(&scan, &options(), &NoObserver).unwrap();
+        let progress = Progress::new(&NoObserver, Phase::Assessment);
+        let refitter = Refitter::new(&fitted, &progress).unwrap();
+        let found = leave_one_out(&refitter).unwrap().unwrap();
+        assert_eq!(found.count(), scan.incidences().len());
+        let without: Vec<usize> = scan.incidences()[1..]
+            .iter()
+            .flat_map(|incidence| incidence.readings.iter().copied())
+            .collect();
+        let others = fit_scan(&scan.kept(without), &options(), &NoObserver).unwrap();
+        let expected = fitted.objective.by_incidence(&others.fit.at())[0];
+        let ratio = found.incidences[0].e_percent.unwrap() / expected.e_percent.unwrap();
+        assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
     }
-    let mut generator = StdRng::seed_from_u64(SEED);
-    let mut resamples = Vec::with_capacity(RESAMPLES);
-    for _ in 0..RESAMPLES {
-        let mut times = vec![0.0; count];
-        for _ in 0..count {
-            times[generator.random_range(0..count)] += 1.0;
-        }
-        resamples.extend(resample(objective, search, model, at, &times, progress)?);
-    }
-    let spread = |&parameter: &Parameter| spread(parameter, &resamples);
-    Ok(model.free().iter().filter_map(spread).collect())
-}
-
-fn resample(
-    objective: &Objective,
-    search: &GridSearch,
-    model: ReducedModel,
-    at: &ModelParameters,
-    times: &[f64],
-    progress: &Progress<'_>,
-) -> Result<Option<ModelParameters>, Cancelled> {
-    progress.advance()?;
-    let mut factors = vec![0.0; objective.len()];
-    let segments = objective.segments().iter();
-    for (segment, times) in segments.zip(times.iter().cycle()) {
-        factors[segment.rows.clone()].fill(*times);
-    }
-    let drawn = objective.reweighted(|row| factors[row]).ok();
-    let Some(drawn) = drawn.filter(|drawn| drawn.suffices_for(model.free())) else {
-        return Ok(None);
-    };
-    let lowest = search.profile(|i| times[i]).lowest().parameters;
-    let start = if drawn.error(&lowest) < drawn.error(at) {
-        lowest
-    } else {
-        *at
-    };
-    unless_cancelled(polish(&drawn, start, model.free(), progress))
-}
-
-fn spread(parameter: Parameter, resamples: &[ModelParameters]) -> Option<Spread> {
-    let mut values: Vec<f64> = resamples.iter().map(|at| parameter.of(at)).collect();
-    values.sort_by(f64::total_cmp);
-    let count = values.len();
-    if count < RESAMPLES / 2 {
-        return None;
-    }
-    let mean = values.iter().sum::<f64>() / count as f64;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    let tail = count / 40;
-    Some(Spread {
-        parameter,
-        standard_deviation: (squares / (count - 1) as f64).sqrt(),
-        from: values[tail],
-        to: values[count - 1 - tail],
-    })
 }

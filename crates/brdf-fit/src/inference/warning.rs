@@ -1,4 +1,4 @@
-//! What a user should know before trusting a fit.
+//! Warnings about a fit and its readings.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -6,47 +6,49 @@ use std::fmt;
 use brdf_core::AnyBrdf;
 use serde::{Deserialize, Serialize};
 
-use crate::fit::Fit;
-use crate::fit::grid_search::GridSearch;
+use super::covariance::Noise;
+use super::estimate::{Estimate, Knowledge};
+use super::model_comparison::NOT_DESCRIBED_PERCENT;
+use super::physics::violation_deg;
+use super::uncertainty::Uncertainty;
+use crate::fit::{Fit, FitOptions, FitProblem};
 use crate::format::counted;
-use crate::inference::uncertainty::{Estimate, Knowledge, Noise, Uncertainty};
 use crate::model::{Model, Parameter};
-use crate::objective::Objective;
 use crate::progress::{Cancelled, Progress};
-use crate::scan::{Measurement, Measurements};
+use crate::scan::{Measurement, Measurements, RefractiveIndex};
 use crate::solver::Termination;
 
-/// Above this E the model does not describe a sample: the readings are missed by a third of their
-/// size (root of 10 %). The paper's own fits have 1.7 ... 6.5 %.
-pub const NOT_DESCRIBED_PERCENT: f64 = 10.0;
-
-/// Fewer incidences say little of the dependence on the incidence angle.
+/// With fewer incidences the dependence on the incidence angle is poorly constrained.
 const FEW_INCIDENCES: usize = 3;
 
-/// A reading is near the mirror direction when its facet is tilted by no more than this, in
-/// radians: 2.5 deg, or 5 deg of view angle in the plane of incidence.
+/// A reading is near the mirror direction when the tilt alpha of its facet is at most this, in
+/// radians: 2.5 deg, which is 5 deg of view angle in the plane of incidence.
 const NEAR_MIRROR_TILT: f64 = 2.5 * PI / 180.0;
 
-/// Residuals twice as large as the stated errors are more than chance.
+/// Above this reduced chi square the residuals exceed the stated errors by more than chance: they are
+/// twice as large.
 const LARGE_CHI_SQUARE: f64 = 4.0;
 
-/// Below this E a scan is described well enough as it is.
+/// Up to this E, in percent, the model describes a scan too well for reversed signs of theta.
 const FITS_WELL_PERCENT: f64 = 1.0;
 
-/// The other side as positive describes the readings better when it lowers E by this factor.
-const TURNED_GAIN: f64 = 0.5;
+/// Reversed signs of theta describe the readings better when they lower E by this factor.
+const REVERSED_GAIN: f64 = 0.5;
 
-/// Something about the data or the fit that its user should know.
+/// A property of the readings or of the fit that limits what the fit means.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum Warning {
-    /// E is too large for the model to describe the sample.
+    /// E is above [`NOT_DESCRIBED_PERCENT`]: the model does not describe the sample.
     NotDescribed {
         /// E in percent.
         e_percent: f64,
     },
-    /// The readings fit better with the other side counted positive.
-    TurnedRound {
+    /// The readings fit much better with the signs of theta reversed: the file seems to count the
+    /// forward side positive.
+    #[serde(rename = "turned-round")]
+    ThetaReversed {
         /// E in percent with theta negated.
         e_percent: f64,
     },
@@ -59,69 +61,70 @@ pub enum Warning {
     NotDetermined {
         /// The parameter.
         parameter: Parameter,
-        /// Why.
+        /// Why, as a clause.
         reason: String,
-        /// The lower end of its interval of 95 %; `None` where it has none.
+        /// The lower end of its 95 % interval; `None` where it has none.
         from: Option<f64>,
         /// The upper end.
         to: Option<f64>,
     },
     /// The residuals are larger than the standard deviations that the scan states.
     LargerThanStatedErrors {
-        /// The mean square of residual over standard deviation.
+        /// The sum of (residual / standard deviation)^2 over the degrees of freedom.
         reduced_chi_square: f64,
     },
-    /// Few incidence angles.
+    /// There are few incidence angles.
     FewIncidences {
         /// How many.
         count: usize,
     },
-    /// Negative readings, which are noise; they are kept.
+    /// Some readings are negative, which is possible by noise; they are kept.
     NegativeReadings {
         /// How many.
         count: usize,
     },
-    /// Readings with a weight of zero, which have no say.
+    /// Some readings have a weight of zero and do not influence the fit.
     #[serde(rename = "weightless-readings")]
     ZeroWeightReadings {
         /// How many.
         count: usize,
     },
-    /// Readings at the same angles as another one; they are all kept.
+    /// Some readings are at the same angles as another reading; all are kept.
     RepeatedReadings {
-        /// How many there are beyond the first of each.
+        /// How many there are beyond the first of each direction.
         count: usize,
     },
-    /// Nothing was measured near the mirror direction.
+    /// No reading is near the mirror direction.
     NoMirrorReadings {
-        /// The smallest tilt of a facet among the readings, in degrees.
+        /// The smallest tilt alpha of a facet among the readings, in degrees.
         smallest_tilt_deg: f64,
     },
-    /// A stage used up its iterations.
+    /// A stage reached its largest number of iterations.
     IterationLimit {
         /// 1 or 2.
         stage: u8,
     },
 }
 
+/// The warning as a clause. How to change the reading of the file is for the program to add.
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotDescribed { e_percent } => write!(
                 f,
-                "the model does not describe this sample: E = {e_percent:.3} % at its optimum, so \
-                 that it misses the readings by {:.0} % of their size (root mean square)",
+                "the model does not describe this sample: E = {e_percent:.3} % at its optimum, a \
+                 root mean square deviation of {:.0} % of the readings",
                 10.0 * e_percent.sqrt()
             ),
-            Self::TurnedRound { e_percent } => write!(
+            Self::ThetaReversed { e_percent } => write!(
                 f,
-                "with theta counted the other way round E would be {e_percent:.3} %: does the file \
-                 count the forward side positive (--theta-positive forward, or --phi-zero forward)?"
+                "with the sign of theta reversed E would be {e_percent:.3} %: the file seems to \
+                 count the forward side positive"
             ),
             Self::ReflectanceAboveOne { psi_deg } => write!(
                 f,
-                "the hemispherical reflectance is above 1 from psi = {psi_deg:.1} deg on, which no \
-                 real surface has"
+                "the hemispherical reflectance is above 1 from psi = {psi_deg:.1} deg on, which is \
+                 impossible for a real surface"
             ),
             Self::NotDetermined {
                 parameter,
@@ -131,62 +134,56 @@ impl fmt::Display for Warning {
             } => {
                 write!(f, "the data do not determine {parameter}: {reason}")?;
                 match (from, to) {
-                    (Some(from), None) => write!(f, " (above {from:.2e} at 95 %)"),
-                    (None, Some(to)) => write!(f, " (below {to:.2e} at 95 %)"),
-                    (Some(from), Some(to)) => write!(f, " ({from:.2e} to {to:.2e} at 95 %)"),
+                    (Some(from), None) => write!(f, " (above {from:.2e} at 95 % confidence)"),
+                    (None, Some(to)) => write!(f, " (below {to:.2e} at 95 % confidence)"),
+                    (Some(from), Some(to)) => {
+                        write!(f, " ({from:.2e} to {to:.2e} at 95 % confidence)")
+                    }
                     (None, None) => Ok(()),
                 }
             }
             Self::LargerThanStatedErrors { reduced_chi_square } => write!(
                 f,
                 "the residuals are {:.1} times as large as the standard deviations of the readings \
-                 (root mean square): what the model misses is more than noise, and the intervals \
-                 are too short",
+                 (root mean square): the model deviates from them by more than noise, and the \
+                 intervals are too short",
                 reduced_chi_square.sqrt()
             ),
-            Self::FewIncidences { count } => {
-                let count = counted(*count, "incidence angle");
-                write!(f, "{count}: little is known of other incidences")
-            }
-            Self::NegativeReadings { count } => {
-                write!(
-                    f,
-                    "{} below zero, kept (noise, or a background too large?)",
-                    counted(*count, "reading")
-                )
-            }
-            Self::ZeroWeightReadings { count } => {
-                write!(
-                    f,
-                    "{} with a weight of zero, without any say",
-                    counted(*count, "reading")
-                )
-            }
-            Self::RepeatedReadings { count } => {
-                write!(
-                    f,
-                    "{} at the same angles as another one, all kept",
-                    counted(*count, "reading")
-                )
-            }
+            Self::FewIncidences { count } => write!(
+                f,
+                "{}: the dependence on the incidence angle is poorly constrained",
+                counted(*count, "incidence angle")
+            ),
+            Self::NegativeReadings { count } => write!(
+                f,
+                "{} below zero, kept (noise, or too large a background subtracted)",
+                counted(*count, "reading")
+            ),
+            Self::ZeroWeightReadings { count } => write!(
+                f,
+                "{} with a weight of zero, without influence on the fit",
+                counted(*count, "reading")
+            ),
+            Self::RepeatedReadings { count } => write!(
+                f,
+                "{} at the same angles as another one, all kept",
+                counted(*count, "reading")
+            ),
             Self::NoMirrorReadings { smallest_tilt_deg } => write!(
                 f,
-                "nothing was measured near the mirror direction: no facet is tilted by less than \
-                 {smallest_tilt_deg:.1} deg, so k2 and k1 rest on the flanks of the peak"
+                "no reading is near the mirror direction: the smallest facet tilt is \
+                 {smallest_tilt_deg:.1} deg, so that k2 and k1 depend on the flanks of the peak"
             ),
-            Self::IterationLimit { stage } => {
-                write!(
-                    f,
-                    "stage {stage} used up its iterations before it converged"
-                )
-            }
+            Self::IterationLimit { stage } => write!(
+                f,
+                "stage {stage} reached its iteration limit before it converged"
+            ),
         }
     }
 }
 
-/// All warnings about a fit of these measurements with its uncertainty, the gravest first.
-///
-/// The widths of a search for a scan that is turned round are told.
+/// All warnings about a fit of these measurements, the most serious first. Each width of the search
+/// with reversed signs of theta is reported.
 pub(crate) fn warnings(
     measurements: &Measurements,
     fit: &Fit,
@@ -199,7 +196,7 @@ pub(crate) fn warnings(
             e_percent: fit.e_percent,
         });
     }
-    warnings.extend(turned_round(measurements, fit, progress)?);
+    warnings.extend(theta_reversed(measurements, fit, progress)?);
     warnings.extend(uncertainty.estimates.iter().filter_map(not_determined));
     warnings.extend(larger_than_stated_errors(uncertainty));
     warnings.extend(reflectance_above_one(fit));
@@ -233,16 +230,16 @@ fn larger_than_stated_errors(uncertainty: &Uncertainty) -> Option<Warning> {
     }
 }
 
-fn turned_round(
+fn theta_reversed(
     measurements: &Measurements,
     fit: &Fit,
     progress: &Progress<'_>,
 ) -> Result<Option<Warning>, Cancelled> {
-    // A table's format leaves no doubt about the sides.
+    // The format of a table defines the sides.
     if fit.e_percent <= FITS_WELL_PERCENT || measurements.is_table() {
         return Ok(None);
     }
-    let turned: Vec<Measurement> = measurements
+    let reversed: Vec<Measurement> = measurements
         .readings()
         .iter()
         .map(|r| Measurement {
@@ -250,35 +247,41 @@ fn turned_round(
             ..*r
         })
         .collect();
-    let Ok(turned) = Measurements::new("", turned) else {
+    let Ok(reversed) = Measurements::new("", reversed) else {
         return Ok(None);
     };
-    let turned = lowest_e_percent(&turned, fit, progress)?;
-    let straight = lowest_e_percent(measurements, fit, progress)?;
-    let better = turned
-        .zip(straight)
-        .filter(|(turned, straight)| *turned < TURNED_GAIN * straight.min(fit.e_percent));
-    Ok(better.map(|(e_percent, _)| Warning::TurnedRound { e_percent }))
+    let reversed = lowest_e_percent(&reversed, fit, progress)?;
+    let as_read = lowest_e_percent(measurements, fit, progress)?;
+    let better = reversed
+        .zip(as_read)
+        .filter(|(reversed, as_read)| *reversed < REVERSED_GAIN * as_read.min(fit.e_percent));
+    Ok(better.map(|(e_percent, _)| Warning::ThetaReversed { e_percent }))
 }
 
-/// The lowest E of the paper's model at the n of a fit, which tells the sides apart as well as any.
+/// The lowest E of the paper's model at the n of a fit, in percent, to the grid of the search. It
+/// distinguishes the sides as well as any other model.
 fn lowest_e_percent(
     scan: &Measurements,
     fit: &Fit,
     progress: &Progress<'_>,
 ) -> Result<Option<f64>, Cancelled> {
-    let (family, weights) = (Model::Three.family(), &fit.options.weights);
-    let Ok(objective) = Objective::new(scan, family, fit.n, weights) else {
+    let options = FitOptions {
+        model: Model::Three,
+        refractive_index: Some(RefractiveIndex::Same(fit.n)),
+        weights: fit.options.weights.clone(),
+        ..FitOptions::default()
+    };
+    let Ok(problem) = FitProblem::new(scan, &options) else {
         return Ok(None);
     };
-    let search = GridSearch::new(&objective, Model::Three.into(), progress)?;
-    Ok(Some(100.0 * search.whole().lowest().error))
+    let lowest = problem.grid_search(progress)?.whole().lowest();
+    Ok(Some(100.0 * lowest.error))
 }
 
 fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
     let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;
-    let psi_deg = brdf.energy_violation_angle()?.to_degrees();
-    // Beyond the limit that the user has set it is no news.
+    let psi_deg = violation_deg(&brdf)?;
+    // Beyond the limit of the condition rho(psi) <= 1 the fit is free to exceed 1.
     if fit
         .energy
         .is_some_and(|energy| psi_deg > energy.limit_deg - 0.1)
@@ -298,7 +301,7 @@ fn iteration_limits(fit: &Fit) -> impl Iterator<Item = Warning> {
 
 fn about_readings(measurements: &Measurements, fit: &Fit) -> impl Iterator<Item = Warning> {
     let readings = measurements.readings();
-    // Those without an E weigh nothing, or are zero.
+    // The readings of an incidence without E are zero, or have a weight of zero.
     let incidences = fit
         .incidences
         .iter()
@@ -330,7 +333,8 @@ fn about_readings(measurements: &Measurements, fit: &Fit) -> impl Iterator<Item 
     .flatten()
 }
 
-/// Readings in the same direction as an earlier one, however their angles are written.
+/// The number of readings in the same direction as an earlier one, in whichever way their angles
+/// express it.
 fn repeated_readings(readings: &[Measurement]) -> usize {
     let mut directions: Vec<[i64; 3]> = readings.iter().map(direction).collect();
     let total = directions.len();
@@ -339,36 +343,30 @@ fn repeated_readings(readings: &[Measurement]) -> usize {
     total - directions.len()
 }
 
-/// psi, |theta| and the azimuth in [0, 2 pi), in units of 1e-9 rad; the azimuth is 0 for a view
-/// along the normal, which has none.
+/// psi, |theta| and the azimuth in [0, 2 pi), in units of 1e-9 rad; the azimuth of a view along the
+/// normal is 0.
 #[expect(
     clippy::cast_possible_truncation,
     reason = "angles of a few rad are far from 2^63 units"
 )]
 fn direction(reading: &Measurement) -> [i64; 3] {
     let units = |angle: f64| (angle * 1e9).round() as i64;
-    let turned = if reading.theta < 0.0 { PI } else { 0.0 };
-    let phi = units((reading.phi + turned).rem_euclid(TAU)) % units(TAU);
+    let half_turn = if reading.theta < 0.0 { PI } else { 0.0 };
+    let phi = units((reading.phi + half_turn).rem_euclid(TAU)) % units(TAU);
     let (psi, theta) = (units(reading.psi), units(reading.theta.abs()));
     [psi, theta, if theta == 0 { 0 } else { phi }]
 }
 
 #[cfg(test)]
 mod tests {
-    use brdf_core::Parameters;
-
     use super::*;
     use crate::fit::{FitOptions, fit_scan};
+    use crate::inference::test_scans::{self, options};
     use crate::progress::{NoObserver, Phase};
-    use crate::scan::RefractiveIndex;
-    use crate::scan::synthetic::scan;
 
     fn warnings_of(readings: Vec<Measurement>, change: impl Fn(&mut FitOptions)) -> Vec<Warning> {
         let scan = Measurements::new("test", readings).unwrap();
-        let mut options = FitOptions {
-            refractive_index: Some(RefractiveIndex::Same(1.5)),
-            ..FitOptions::default()
-        };
+        let mut options = options();
         change(&mut options);
         let progress = Progress::new(&NoObserver, Phase::Uncertainty);
         let fitted = fit_scan(&scan, &options, &progress).unwrap();
@@ -378,13 +376,8 @@ mod tests {
 
     /// A scan with 2 % of ripple, which the model fits well and no parameter follows.
     fn rippled(k2: f64, kd: f64, k1: f64) -> Vec<Measurement> {
-        let mut readings = scan(Parameters::new(k2, kd, k1).unwrap(), 1.5)
-            .readings()
-            .to_vec();
-        for (i, reading) in readings.iter_mut().enumerate() {
-            reading.brdf *= 1.0 + 0.02 * (2.4 * i as f64).sin();
-        }
-        readings
+        let scan = test_scans::rippled([k2, kd, k1], 1.5, 0.02);
+        scan.readings().to_vec()
     }
 
     #[test]
@@ -393,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_peak_between_the_readings_has_no_width() {
+    fn the_width_of_a_peak_between_the_readings_is_not_determined() {
         let mut readings = rippled(0.1, 0.1, 0.2);
         for reading in &mut readings {
             let is_mirror = reading.theta == -reading.psi;
@@ -413,8 +406,8 @@ mod tests {
     }
 
     #[test]
-    fn readings_on_the_flank_alone_leave_the_weights_open() {
-        // Far from the mirror direction the lobe is k2 k1^2 / tan^2 alpha: one number for two.
+    fn readings_on_the_flank_alone_do_not_determine_the_weights() {
+        // Far from the mirror direction the lobe is k2 k1^2 / tan^2 alpha: k2 k1^2 is all it shows.
         let readings = rippled(0.1, 0.1, 0.02);
         let flank = readings
             .into_iter()
@@ -439,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn too_much_reflectance_is_told_with_its_angle() {
+    fn a_reflectance_above_one_is_reported_with_its_angle() {
         let all = warnings_of(rippled(0.156, 0.584, 1.338), |_| ());
         let angle = all.iter().find_map(|w| match w {
             Warning::ReflectanceAboveOne { psi_deg } => Some(*psi_deg),
@@ -456,13 +449,14 @@ mod tests {
         }
         let all = warnings_of(readings, |_| ());
         assert!(
-            all.iter().any(|w| matches!(w, Warning::TurnedRound { .. })),
+            all.iter()
+                .any(|w| matches!(w, Warning::ThetaReversed { .. })),
             "{all:?}"
         );
     }
 
     #[test]
-    fn used_up_iterations_are_told() {
+    fn a_reached_iteration_limit_is_reported() {
         let all = warnings_of(rippled(0.1, 0.1, 0.2), |options| options.max_iterations = 1);
         assert!(all.contains(&Warning::IterationLimit { stage: 1 }));
         assert!(all.contains(&Warning::IterationLimit { stage: 2 }));
@@ -471,16 +465,33 @@ mod tests {
     #[test]
     fn each_repeated_direction_is_counted() {
         let mut readings = rippled(0.1, 0.1, 0.2);
-        // Once more as it is, and twice as the same direction in other words.
+        // One reading repeated as it is, and another twice with other angles of its direction.
         let theta = readings[7].theta;
-        let mut turned = [readings[3], readings[7], readings[7]];
-        (turned[1].theta, turned[1].phi) = (-theta, PI);
-        turned[2].phi = TAU;
-        readings.extend(turned);
+        let mut repeated = [readings[3], readings[7], readings[7]];
+        (repeated[1].theta, repeated[1].phi) = (-theta, PI);
+        repeated[2].phi = TAU;
+        readings.extend(repeated);
         let all = warnings_of(readings, |_| ());
         assert!(
             all.contains(&Warning::RepeatedReadings { count: 3 }),
             "{all:?}"
+        );
+    }
+
+    #[test]
+    fn the_serialised_kinds_are_those_of_the_file_format() {
+        let kind = |warning: &Warning| serde_json::to_value(warning).unwrap()["kind"].clone();
+        assert_eq!(
+            kind(&Warning::ThetaReversed { e_percent: 1.0 }),
+            "turned-round"
+        );
+        assert_eq!(
+            kind(&Warning::ZeroWeightReadings { count: 1 }),
+            "weightless-readings"
+        );
+        assert_eq!(
+            kind(&Warning::IterationLimit { stage: 1 }),
+            "iteration-limit"
         );
     }
 }

@@ -7,7 +7,7 @@ use super::table::{Column, Row, Table, escaped};
 use super::text::refractive_index;
 use super::{incidences, models, parameters, stages};
 use crate::format::counted;
-use crate::inference::assessment::Assessment;
+use crate::inference::Assessment;
 
 const STYLE: &str = "
 body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }

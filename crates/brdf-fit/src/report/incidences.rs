@@ -3,15 +3,15 @@
 use super::table::{Column, Row, Table};
 use crate::fit::Fit;
 use crate::format::digits;
-use crate::inference::assessment::Assessment;
-use crate::inference::cross_validation::Prediction;
+use crate::inference::Assessment;
+use crate::inference::CrossValidation;
 use crate::objective::IncidenceError;
 
 /// Incidences side by side in the text layout.
 const PER_TABLE: usize = 9;
 
-fn prediction(assessment: Option<&Assessment>) -> Option<&Prediction> {
-    assessment?.prediction.as_ref()
+fn prediction(assessment: Option<&Assessment>) -> Option<&CrossValidation> {
+    assessment?.cross_validation.as_ref()
 }
 
 /// A number in percent, `-` where it is not defined.

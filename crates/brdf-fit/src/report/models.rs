@@ -2,7 +2,7 @@
 
 use super::table::{Column, Row, Table};
 use crate::format::digits;
-use crate::inference::assessment::{Assessment, Candidate};
+use crate::inference::{Assessment, Candidate};
 use crate::model::Parameter;
 
 /// How the numbers of [`model_table`] are written.

@@ -2,8 +2,9 @@
 
 use super::table::{Column, Row, Table};
 use crate::format::digits;
-use crate::inference::assessment::Assessment;
-use crate::inference::uncertainty::{Estimate, Interval, Knowledge, Uncertainty, rounded};
+use crate::format::rounded;
+use crate::inference::Assessment;
+use crate::inference::{Estimate, Interval, Knowledge, Uncertainty};
 use crate::model::Parameter;
 
 /// Heading of the bootstrap over resampled incidences.
@@ -62,7 +63,7 @@ fn detailed_row(estimate: &Estimate, bootstrap: String) -> Row {
                 bootstrap,
             ])
         }
-        Knowledge::HeldByEnergy => {
+        Knowledge::ConstrainedByEnergy => {
             Row::with_remark([name, digits(value)], "constrained by rho <= 1")
         }
         Knowledge::NotDetermined { reason, .. } => {
@@ -93,7 +94,7 @@ pub(super) fn brief(uncertainty: &Uncertainty, assessment: Option<&Assessment>) 
                 (String::new(), format!("not determined: {reason}"))
             }
             Knowledge::OnBound { .. } => (estimate.to_string(), "on its bound".to_owned()),
-            Knowledge::Determined { .. } | Knowledge::HeldByEnergy => {
+            Knowledge::Determined { .. } | Knowledge::ConstrainedByEnergy => {
                 (estimate.to_string(), String::new())
             }
         };

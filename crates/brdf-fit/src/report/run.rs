@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fit, FitError, FitOptions, fit_scan};
-use crate::inference::assessment::{Assessment, assess_observed, sufficient_model};
-use crate::inference::uncertainty::Uncertainty;
-use crate::inference::warning::{Warning, warnings};
+use crate::inference::Uncertainty;
+use crate::inference::{Assessment, assess_observed, sufficient_model};
+use crate::inference::{Warning, warnings};
 use crate::model::Model;
 use crate::progress::{NoObserver, Observer, Phase, Progress};
 use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
@@ -88,7 +88,7 @@ pub enum ModelChoice {
     /// The model of the options.
     Given,
     /// The smallest model of the hierarchy that predicts incidences outside the fit about as well as
-    /// the best of them: see [`Verdict`](crate::inference::assessment::Verdict).
+    /// the best of them: see [`Verdict`](crate::inference::Verdict).
     Auto,
 }
 

@@ -9,8 +9,8 @@ use super::{incidences, models, parameters, stages};
 use crate::fit::Fit;
 use crate::fit::robust::REJECTED;
 use crate::format::{counted, digits, in_degrees, shortest};
-use crate::inference::assessment::{Assessment, Physics};
-use crate::inference::uncertainty::{Noise, Uncertainty};
+use crate::inference::{Assessment, Physics};
+use crate::inference::{Noise, Uncertainty};
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::objective::MOST_FOLDS;
 use crate::scan::{Convention, Measurement};
@@ -323,7 +323,7 @@ fn cross_validation_lines(fit: &Fit, assessment: &Assessment) -> String {
             "\n  the {incidences} incidences are left out several at a time, in {MOST_FOLDS} folds"
         );
     }
-    let _ = match &assessment.prediction {
+    let _ = match &assessment.cross_validation {
         Some(prediction) => writeln!(
             text,
             "\n  leave-one-incidence-out cross-validation: E = {} % (the fit: {} %)",

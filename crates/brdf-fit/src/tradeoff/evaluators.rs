@@ -12,16 +12,15 @@ use brdf_core::scene::{
 use serde::Serialize;
 
 use super::pareto::pareto;
-use super::picture::{TradePoint, picture};
 use crate::format::{counted, in_degrees};
-use crate::plot::{Figure, PlotError};
+use crate::plot::{Figure, PlotError, TradePoint, trade_picture};
 
 /// The name of [`AnyBrdf::value`] called point after point.
 pub const SINGLE_VALUES: &str = "value";
 
 /// A comparison of the ways to evaluate a BRDF for a scene.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EvaluatorTrade {
+pub struct EvaluatorTradeoff {
     /// The name of the surface.
     pub of: String,
     /// The BRDF.
@@ -76,8 +75,8 @@ pub struct NotMade {
     pub reason: String,
 }
 
-/// The columns of [`write_evaluator_trade`].
-pub const EVALUATOR_TRADE_COLUMNS: [&str; 10] = [
+/// The columns of [`write_evaluator_tradeoff`].
+pub const EVALUATOR_TRADEOFF_COLUMNS: [&str; 10] = [
     "name",
     "ns_per_evaluation",
     "ns_per_evaluation_all_threads",
@@ -91,7 +90,7 @@ pub const EVALUATOR_TRADE_COLUMNS: [&str; 10] = [
 ];
 
 /// Measures every evaluator of a BRDF for a scene. This takes about a second.
-pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTrade {
+pub fn evaluator_tradeoff(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTradeoff {
     let survey = Survey::new(brdf, scene);
     let probe = Probe::new(brdf, &scene.domain, scene.coordinates, TIMED, 1);
     let single = cost_of_single_values(brdf, &probe);
@@ -113,7 +112,7 @@ pub fn trade_evaluators(of: &str, brdf: &AnyBrdf, scene: &Scene) -> EvaluatorTra
     for (evaluator, on_front) in evaluators.iter_mut().zip(pareto(&choices)) {
         evaluator.pareto = on_front;
     }
-    EvaluatorTrade {
+    EvaluatorTradeoff {
         of: of.to_owned(),
         brdf: *brdf,
         scene: *scene,
@@ -162,7 +161,7 @@ fn reason(candidate: &Candidate) -> Option<String> {
     candidate.refusal.as_ref().map(ToString::to_string)
 }
 
-impl EvaluatorTrade {
+impl EvaluatorTradeoff {
     /// The measurements as a table of text.
     pub fn text(&self) -> String {
         let mut text = self.heading();
@@ -265,7 +264,7 @@ impl EvaluatorTrade {
             chosen: self.plan == Some(evaluator.name),
         };
         let points: Vec<TradePoint> = self.evaluators.iter().map(point).collect();
-        picture(
+        trade_picture(
             &points,
             "time of an evaluation on one thread / ns",
             "largest relative error",
@@ -287,9 +286,12 @@ fn error(error: f64) -> String {
 /// # Errors
 ///
 /// The error of the writer.
-pub fn write_evaluator_trade(trade: &EvaluatorTrade, writer: impl io::Write) -> io::Result<()> {
+pub fn write_evaluator_tradeoff(
+    trade: &EvaluatorTradeoff,
+    writer: impl io::Write,
+) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
-    csv.write_record(EVALUATOR_TRADE_COLUMNS)?;
+    csv.write_record(EVALUATOR_TRADEOFF_COLUMNS)?;
     for e in &trade.evaluators {
         let all = e.ns_per_evaluation_all_threads;
         csv.write_record([
@@ -315,7 +317,7 @@ mod tests {
 
     use super::*;
 
-    fn trade(tolerance: f64) -> EvaluatorTrade {
+    fn trade(tolerance: f64) -> EvaluatorTradeoff {
         let parameters = Parameters::new(0.3, 0.1, 0.2).unwrap();
         let brdf = ThreeParameterBrdf::new(parameters, 1.5).unwrap();
         let scene = Scene {
@@ -323,7 +325,7 @@ mod tests {
             tolerance,
             ..Scene::default()
         };
-        trade_evaluators("a surface", &AnyBrdf::Paper(brdf), &scene)
+        evaluator_tradeoff("a surface", &AnyBrdf::Paper(brdf), &scene)
     }
 
     #[test]
@@ -349,7 +351,7 @@ mod tests {
     fn csv_and_json_contain_the_same_numbers() {
         let trade = trade(1e-3);
         let mut bytes = Vec::new();
-        write_evaluator_trade(&trade, &mut bytes).unwrap();
+        write_evaluator_tradeoff(&trade, &mut bytes).unwrap();
         let mut reader = csv::Reader::from_reader(bytes.as_slice());
         let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
         let json = serde_json::to_value(&trade).unwrap();

@@ -1,11 +1,10 @@
-//! Speed for accuracy, measured: what each way costs, how far it errs, and which are worth it.
+//! Measured trade-offs between speed and accuracy: the cost of each alternative, its error, and the
+//! alternatives that no other one beats in both.
 //!
-//! - [`evaluators`]: the ways to evaluate a BRDF, time against error, over the directions of a scene;
+//! - [`evaluators`]: the ways to evaluate a BRDF over the directions of a scene, time against error;
 //! - [`fitting`]: the ways to fit a scan, time against E;
-//! - [`pareto`]: which choices no other one beats;
-//! - [`picture`]: cost against error.
+//! - [`pareto`]: the Pareto front.
 
 pub mod evaluators;
 pub mod fitting;
 pub mod pareto;
-pub mod picture;

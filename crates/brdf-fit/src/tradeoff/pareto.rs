@@ -1,10 +1,12 @@
-//! The choices of a trade that are worth their cost.
+//! The Pareto front of a trade-off.
 
-/// Which of the choices, each a (cost, error), are on the Pareto front: no other one is better in
-/// one of the two and not worse in the other.
+/// Which of the choices, each given as (cost, error), are on the Pareto front: no other choice is
+/// better in one of the two and at least as good in the other.
 ///
-/// Equal choices stand on the front together. What is not finite (a cost that cannot be paid, an
-/// error that is not known) is never on it and keeps no other from it.
+/// Of equal choices, all or none are on the front. A choice with a cost or an error that is not
+/// finite is never on it and does not dominate any other.
+///
+/// # Examples
 ///
 /// ```
 /// use brdf_fit::tradeoff::pareto::pareto;
@@ -36,7 +38,7 @@ mod tests {
     const INF: f64 = f64::INFINITY;
 
     #[test]
-    fn nothing_and_one_choice() {
+    fn the_front_of_nothing_is_empty_and_a_single_choice_is_on_it() {
         assert!(pareto(&[]).is_empty());
         assert_eq!(pareto(&[(1.0, 1.0)]), [true]);
     }
@@ -48,13 +50,13 @@ mod tests {
     }
 
     #[test]
-    fn equal_in_one_the_better_in_the_other_dominates() {
+    fn of_two_choices_equal_in_one_the_better_in_the_other_dominates() {
         assert_eq!(pareto(&[(1.0, 1.0), (1.0, 2.0)]), [true, false]);
         assert_eq!(pareto(&[(2.0, 1.0), (1.0, 1.0)]), [false, true]);
     }
 
     #[test]
-    fn what_is_not_finite_is_not_on_the_front_and_keeps_none_from_it() {
+    fn a_choice_that_is_not_finite_is_not_on_the_front_and_dominates_none() {
         let choices = [
             (f64::NAN, 0.0),
             (0.0, f64::NAN),
@@ -68,7 +70,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_not_on_the_front_is_dominated_by_what_is(
+        fn a_choice_that_is_not_on_the_front_is_dominated_by_one_that_is(
             choices in prop::collection::vec((0_u8..20, 0_u8..20), 0..40),
         ) {
             let choices: Vec<(f64, f64)> =

@@ -154,8 +154,9 @@ impl ShownScan {
             let Some(brdf) = scan.knobs.brdf() else {
                 return Vec::new();
             };
-            let band = |uncertainty: &brdf_fit::inference::uncertainty::Uncertainty,
-                        at: &Geometry| { uncertainty.band(&brdf, at) };
+            let band = |uncertainty: &brdf_fit::inference::Uncertainty, at: &Geometry| {
+                uncertainty.band(&brdf, at)
+            };
             let sigma = uncertainty.map(|u| move |at: &Geometry| band(u, at));
             let sigma = sigma
                 .as_ref()

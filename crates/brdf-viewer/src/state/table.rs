@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use brdf_fit::format::digits;
-use brdf_fit::inference::uncertainty::Estimate;
+use brdf_fit::inference::Estimate;
 
 use super::sample::Sample;
 use super::{Effect, State};

@@ -15,7 +15,9 @@ use crate::cli::stream;
 use crate::fit::Fit;
 use crate::report::{Document, Report};
 use crate::scan::WAVELENGTH_TOLERANCE;
-use crate::tradeoff::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
+use crate::tradeoff::evaluators::{
+    EvaluatorTradeoff, evaluator_tradeoff, write_evaluator_tradeoff,
+};
 
 /// Measures every evaluator; [`Outcome::Incomplete`] if none is within the tolerance.
 pub(super) fn compare(evaluation: &Evaluation, outputs: &Outputs) -> Compared {
@@ -23,9 +25,9 @@ pub(super) fn compare(evaluation: &Evaluation, outputs: &Outputs) -> Compared {
     outputs.check(model.map(|path| ("--model", path)))?;
     let (name, brdf) = evaluation.brdf().map_err(|failure| vec![failure])?;
     let scene = evaluation.scene().map_err(|failure| vec![failure])?;
-    let trade: EvaluatorTrade = trade_evaluators(&name, &brdf, &scene);
+    let trade: EvaluatorTradeoff = evaluator_tradeoff(&name, &brdf, &scene);
     let figures = vec![(None, trade.figure())];
-    let csv = |writer: &mut dyn Write| write_evaluator_trade(&trade, writer);
+    let csv = |writer: &mut dyn Write| write_evaluator_tradeoff(&trade, writer);
     outputs.deliver(&trade.text(), &trade, csv, figures)?;
     Ok(if trade.plan.is_some() {
         Outcome::Complete

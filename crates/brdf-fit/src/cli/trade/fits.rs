@@ -11,7 +11,7 @@ use crate::cli::stream;
 use crate::fit::FitOptions;
 use crate::output::print_error;
 use crate::read::{ReadError, ReadOptions};
-use crate::tradeoff::fitting::{FitTrade, trade_fits, write_fit_trades};
+use crate::tradeoff::fitting::{FitTradeoff, fit_tradeoff, write_fit_tradeoffs};
 
 /// Measures each way to fit every wavelength of a file; [`Outcome::Incomplete`] if one of them
 /// cannot be fitted.
@@ -24,11 +24,11 @@ pub(super) fn compare(fitting: &Fitting) -> Compared {
         refractive_index: fitting.n.clone(),
         ..FitOptions::default()
     };
-    let mut trades: Vec<FitTrade> = Vec::new();
+    let mut trades: Vec<FitTradeoff> = Vec::new();
     let mut outcome = Outcome::Complete;
     for scan in scans {
         let at = place(&scan.source(), scan.wavelength_um());
-        match trade_fits(&*scan.measurements().map_err(failure)?, &options) {
+        match fit_tradeoff(&*scan.measurements().map_err(failure)?, &options) {
             Ok(trade) => trades.push(trade),
             Err(error) if error.is_usage() => return Err(vec![Failure::from(error).at(at)]),
             Err(error) => {
@@ -37,12 +37,12 @@ pub(super) fn compare(fitting: &Fitting) -> Compared {
             }
         }
     }
-    let texts: Vec<String> = trades.iter().map(FitTrade::text).collect();
+    let texts: Vec<String> = trades.iter().map(FitTradeoff::text).collect();
     let several = trades.len() > 1;
     let figures = trades
         .iter()
         .map(|trade| (trade.wavelength_um.filter(|_| several), trade.figure()));
-    let csv = |writer: &mut dyn Write| write_fit_trades(&trades, writer);
+    let csv = |writer: &mut dyn Write| write_fit_tradeoffs(&trades, writer);
     fitting
         .outputs
         .deliver(&texts.join("\n"), &trades, csv, figures.collect())?;

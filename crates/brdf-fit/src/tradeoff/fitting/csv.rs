@@ -1,13 +1,13 @@
-//! The alternatives as CSV.
+//! The alternatives of a trade-off of fitting as CSV.
 
 use std::io;
 
-use super::{Alternative, FitTrade, Measured, Outcome};
+use super::result::{Alternative, FitTradeoff, Measured, Outcome};
 use crate::model::Parameter;
 
-/// The header of the CSV. E is in percent, its excess a fraction of the lowest; the shifts are in
-/// standard errors of the reference.
-pub const FIT_TRADE_COLUMNS: [&str; 25] = [
+/// The header of the CSV of [`write_fit_tradeoffs`]. E is in percent, the excess of E a fraction of the
+/// lowest E; shifts are in standard errors of the reference.
+pub const FIT_TRADEOFF_COLUMNS: [&str; 25] = [
     "file",
     "wavelength_um",
     "name",
@@ -35,24 +35,29 @@ pub const FIT_TRADE_COLUMNS: [&str; 25] = [
     "status",
 ];
 
-/// Writes one line an alternative; what was not fitted has empty columns and its error as status.
-pub fn write_fit_trades(trades: &[FitTrade], writer: impl io::Write) -> io::Result<()> {
+/// Writes trade-offs as CSV, one line for each alternative. A failed alternative has empty columns and
+/// its error as the status.
+///
+/// # Errors
+///
+/// The writer fails.
+pub fn write_fit_tradeoffs(tradeoffs: &[FitTradeoff], writer: impl io::Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
-    csv.write_record(FIT_TRADE_COLUMNS)?;
-    for trade in trades {
-        for alternative in &trade.alternatives {
-            csv.write_record(record(trade, alternative))?;
+    csv.write_record(FIT_TRADEOFF_COLUMNS)?;
+    for tradeoff in tradeoffs {
+        for alternative in &tradeoff.alternatives {
+            csv.write_record(record(tradeoff, alternative))?;
         }
     }
     csv.flush()
 }
 
-/// The line of an alternative, in the order of [`FIT_TRADE_COLUMNS`].
-fn record(trade: &FitTrade, alternative: &Alternative) -> Vec<String> {
+/// The line of an alternative, in the order of [`FIT_TRADEOFF_COLUMNS`].
+fn record(tradeoff: &FitTradeoff, alternative: &Alternative) -> Vec<String> {
     let measured = alternative.measured();
     let mut record = vec![
-        trade.source.clone(),
-        or_empty(trade.wavelength_um),
+        tradeoff.source.clone(),
+        or_empty(tradeoff.wavelength_um),
         alternative.name.clone(),
         alternative.method.clone(),
         alternative.stages.clone(),

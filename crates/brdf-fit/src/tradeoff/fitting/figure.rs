@@ -1,11 +1,14 @@
-//! The picture of the trade: excess E against time.
+//! The figure of a trade-off of fitting: excess E against time.
 
-use super::{Alternative, FitTrade};
-use crate::plot::{Figure, PlotError};
-use crate::tradeoff::picture::{TradePoint, picture};
+use super::result::{Alternative, FitTradeoff};
+use crate::plot::{Figure, PlotError, TradePoint, trade_picture};
 
-impl FitTrade {
-    /// Excess E against time, both logarithmic; the whole fit is the chosen one.
+impl FitTradeoff {
+    /// Excess E against time on logarithmic axes. The reference is marked as the chosen alternative.
+    ///
+    /// # Errors
+    ///
+    /// The figure cannot be drawn.
     pub fn figure(&self) -> Result<Figure, PlotError> {
         let points: Vec<TradePoint> = self
             .alternatives
@@ -13,7 +16,7 @@ impl FitTrade {
             .enumerate()
             .filter_map(|(i, alternative)| point(i == 0, alternative))
             .collect();
-        let figure = picture(
+        let figure = trade_picture(
             &points,
             "time of a fit on one thread / us",
             "excess E = E over all readings / lowest - 1",

@@ -1,36 +1,40 @@
-//! A fit by the profile alone: no start, no derivatives, no stages.
+//! A fit by the profile of E alone, without a start, derivatives or stages.
 //!
-//! For given other parameters the best k2 and kD are known in closed form, so that E is a function
-//! of k1 (and of n and p where they are free). It is searched over the grid of the global check,
-//! and where k1 is all that is left, minimised between two widths of the grid by Brent's method.
+//! For given other parameters the optimal k2 and kD are known in closed form, so that the minimum of
+//! E over them is a function of k1 (and of n and p where they are free). It is evaluated on the grid
+//! of the global check. Where only k1 remains, it can be minimised between grid points by Brent's
+//! method (Brent, "Algorithms for Minimization without Derivatives", Prentice-Hall 1973, chapter 5).
 
 use argmin::core::{CostFunction, Error, Executor, State as _};
 use argmin::solver::brent::BrentOpt;
 use brdf_core::ModelParameters;
 
-use crate::fit::grid_search::{GridSearch, ProfilePoint, best_weights};
+use super::error::TrialError;
+use crate::fit::FitProblem;
+use crate::fit::grid_search::{Profile, ProfilePoint, best_weights};
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::Objective;
 use crate::progress::{NoObserver, Phase, Progress};
-use crate::scan::Measurements;
+use crate::scan::{Measurements, RefractiveIndex};
+use crate::solver::SolverError;
 use crate::{FitError, FitOptions};
 
-/// Brent's method ends when ln k1 is known to about this: E is then known to its square.
+/// Tolerance of ln k1 in Brent's method; the relative error of E is about its square.
 const WIDTH_TOLERANCE: f64 = 1e-8;
 
-/// Far more steps than Brent's method takes within two steps of the grid.
+/// Largest number of iterations, far above what Brent's method needs within two steps of the grid.
 const MOST_STEPS: u64 = 200;
 
-/// How far the profile is followed.
+/// How the minimum of the profile is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Depth {
-    /// The lowest point of the grid.
+    /// The lowest grid point.
     Grid,
-    /// The minimum next to it.
+    /// The minimum next to the lowest grid point.
     Refined,
 }
 
-/// What the profile came to.
+/// The result of a fit by the profile.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Found {
     pub(super) parameters: ModelParameters,
@@ -39,61 +43,66 @@ pub(super) struct Found {
 
 /// Fits by the profile alone, at the refractive index n where that is not free.
 ///
-/// Errors: options that the profile cannot follow, and readings whose E is not defined.
+/// # Errors
+///
+/// The profile does not support the options, E of the readings is not defined, or there are not more
+/// readings of non-zero weight than free parameters.
 pub(super) fn fit_by_profile(
     scan: &Measurements,
     options: &FitOptions,
     n: f64,
     depth: Depth,
-) -> Result<Found, String> {
+) -> Result<Found, TrialError> {
     let model = options.reduced_model();
     check(options, model, depth)?;
-    let objective = Objective::condensed(scan, model.family(), n, &options.weights)
-        .map_err(|error| error.to_string())?;
-    if !objective.suffices_for(model.free()) {
-        let count = objective.len() - objective.zero_weight();
-        let parameters = model.free().len();
-        return Err(FitError::TooFewReadings { count, parameters }.to_string());
-    }
+    let options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(n)),
+        ..options.clone()
+    };
+    let problem = FitProblem::new(scan, &options)?;
+    problem.check_count()?;
     let progress = Progress::new(&NoObserver, Phase::GlobalCheck);
-    let search =
-        GridSearch::new(&objective, model, &progress).map_err(|error| error.to_string())?;
+    let search = problem.grid_search(&progress).map_err(FitError::from)?;
     let profile = search.whole();
     let widths = profile.along(Parameter::K1);
-    let (lowest, how) = match depth {
+    let (lowest, then) = match depth {
         Depth::Grid => (profile.lowest(), ""),
-        Depth::Refined => (refined(&objective, model, &widths)?, " and between them"),
+        Depth::Refined => (
+            refined(problem.objective(), model, &profile, &widths)?,
+            ", then refined",
+        ),
     };
     Ok(Found {
         parameters: lowest.parameters,
-        ended_by: format!("{} widths searched{how}", widths.len()),
+        ended_by: format!("{} widths searched{then}", widths.len()),
     })
 }
 
-fn check(options: &FitOptions, model: ReducedModel, depth: Depth) -> Result<(), String> {
+fn check(options: &FitOptions, model: ReducedModel, depth: Depth) -> Result<(), TrialError> {
     if options.robust.is_some() || options.energy_limit.is_some() {
-        return Err("the profile has neither a robust loss nor rho <= 1".to_owned());
+        return Err(TrialError::ProfileOptions);
     }
     let further = [Parameter::N, Parameter::P];
     let further = further
         .into_iter()
         .find(|&parameter| model.frees(parameter));
     match (depth, further) {
-        (Depth::Refined, Some(parameter)) => Err(format!(
-            "the profile is refined over k1 alone, and {parameter} is free"
-        )),
+        (Depth::Refined, Some(parameter)) => Err(TrialError::ProfileNotRefined(parameter)),
         _ => Ok(()),
     }
 }
 
-/// The minimum next to the lowest of the widths.
+/// The minimum next to the lowest of the widths along a profile.
 fn refined(
     objective: &Objective,
     model: ReducedModel,
+    profile: &Profile<'_>,
     widths: &[ProfilePoint],
-) -> Result<ProfilePoint, String> {
+) -> Result<ProfilePoint, FitError> {
     let lowest = (0..widths.len()).min_by(|&i, &j| widths[i].error.total_cmp(&widths[j].error));
-    let lowest = lowest.ok_or("the profile has no points")?;
+    let Some(lowest) = lowest else {
+        return Ok(profile.lowest());
+    };
     let log_k1 = |i: usize| widths[i].parameters.k1.ln();
     let from = log_k1(lowest.saturating_sub(1));
     let to = log_k1((lowest + 1).min(widths.len() - 1));
@@ -110,7 +119,7 @@ fn refined(
         .configure(|state| state.max_iters(MOST_STEPS))
         .ctrlc(false)
         .run()
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| SolverError::from_argmin(&error))?;
     let found = result
         .state
         .get_best_param()
@@ -119,7 +128,7 @@ fn refined(
     Ok(found.unwrap_or(widths[lowest]))
 }
 
-/// E of the best weights as a function of ln k1.
+/// The minimum of E over k2 and kD as a function of ln k1.
 #[derive(Clone, Copy)]
 struct Line<'a> {
     objective: &'a Objective,
@@ -153,15 +162,16 @@ mod tests {
 
     use super::*;
     use crate::model::{FixedParameters, Model};
+    use crate::objective::weights::Weights;
     use crate::scan::synthetic::scan;
 
-    fn found(options: &FitOptions, depth: Depth) -> Result<Found, String> {
+    fn found(options: &FitOptions, depth: Depth) -> Result<Found, TrialError> {
         let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
         fit_by_profile(&scan(truth, 1.5), options, 1.5, depth)
     }
 
     #[test]
-    fn the_truth_is_found_between_the_widths() {
+    fn the_true_width_is_found_between_grid_points() {
         let options = FitOptions::default();
         let at = found(&options, Depth::Refined).unwrap().parameters;
         assert!((at.k1 / 0.2 - 1.0).abs() < 1e-6, "{at:?}");
@@ -171,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_held_width_leaves_the_weights() {
+    fn with_a_fixed_width_only_the_weights_are_fitted() {
         let options = FitOptions {
             fixed: FixedParameters::none().with(Parameter::K1, 0.2),
             ..FitOptions::default()
@@ -184,20 +194,41 @@ mod tests {
     }
 
     #[test]
-    fn a_model_with_more_than_a_width_has_the_grid_alone() {
+    fn a_model_with_more_than_a_width_cannot_be_refined() {
         let options = FitOptions::default().with_model(Model::ThreeN);
         assert!(found(&options, Depth::Grid).is_ok());
         let error = found(&options, Depth::Refined).unwrap_err();
-        assert!(error.ends_with("n is free"), "{error}");
+        assert_eq!(error, TrialError::ProfileNotRefined(Parameter::N));
+        assert!(error.to_string().ends_with("n is free"), "{error}");
+    }
+
+    /// A table has fewer rows than readings; the error counts readings.
+    #[test]
+    fn a_table_with_too_few_weighted_readings_is_an_error_with_their_number() {
+        let mut table = scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
+        table.incidence_class = Some(0.1);
+        let options = FitOptions {
+            weights: Weights {
+                mask_source: 149.9_f64.to_radians(),
+                ..Weights::default()
+            },
+            ..FitOptions::default()
+        };
+        let error = fit_by_profile(&table, &options, 1.5, Depth::Grid).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "1 reading: 3 free parameters need at least 4"
+        );
     }
 
     #[test]
-    fn what_the_profile_does_not_have_is_said() {
+    fn options_that_the_profile_does_not_support_are_an_error() {
         let options = FitOptions {
             energy_limit: Some(1.4),
             ..FitOptions::default()
         };
         let error = found(&options, Depth::Grid).unwrap_err();
-        assert!(error.contains("rho <= 1"), "{error}");
+        assert_eq!(error, TrialError::ProfileOptions);
+        assert!(error.to_string().contains("rho <= 1"), "{error}");
     }
 }

@@ -1,9 +1,10 @@
-//! Fewer readings of a scan: what a shorter measurement would have given.
+//! Parts of the readings of a scan, as a shorter measurement would give them.
 
-use crate::format::{counted, in_degrees};
+use super::error::TrialError;
+use crate::format::in_degrees;
 use crate::scan::{Incidence, Measurements};
 
-/// Every so-manieth reading of each incidence in the order of the file, beginning with its first.
+/// Of each incidence, every `step`-th reading in the order of the file, beginning with its first.
 pub(super) fn every_reading(scan: &Measurements, step: usize) -> Measurements {
     let incidences = scan.incidences();
     let kept = |incidence: &Incidence| -> Vec<usize> {
@@ -14,18 +15,22 @@ pub(super) fn every_reading(scan: &Measurements, step: usize) -> Measurements {
 
 /// Every second incidence, beginning with the smallest.
 ///
-/// Errors: there is only one.
-pub(super) fn every_second_incidence(scan: &Measurements) -> Result<Measurements, String> {
+/// # Errors
+///
+/// There are fewer than two incidences.
+pub(super) fn every_second_incidence(scan: &Measurements) -> Result<Measurements, TrialError> {
     let incidences = several_incidences(scan)?;
     let kept = incidences.iter().step_by(2);
     let indices = kept.flat_map(|incidence| incidence.readings.iter().copied());
     Ok(of_indices(scan, indices.collect()))
 }
 
-/// All incidences but the largest.
+/// All incidences except the largest.
 ///
-/// Errors: there is only one.
-pub(super) fn without_largest(scan: &Measurements) -> Result<Measurements, String> {
+/// # Errors
+///
+/// There are fewer than two incidences.
+pub(super) fn without_largest(scan: &Measurements) -> Result<Measurements, TrialError> {
     let incidences = several_incidences(scan)?;
     let kept = &incidences[..incidences.len() - 1];
     let indices = kept
@@ -34,7 +39,7 @@ pub(super) fn without_largest(scan: &Measurements) -> Result<Measurements, Strin
     Ok(of_indices(scan, indices.collect()))
 }
 
-/// What is done without in [`without_largest`]: `without 70 deg`.
+/// The name of [`without_largest`]: `without 70 deg`.
 pub(super) fn without_largest_name(scan: &Measurements) -> String {
     let incidences = scan.incidences();
     let largest = incidences.last().map(|incidence| in_degrees(incidence.psi));
@@ -44,11 +49,10 @@ pub(super) fn without_largest_name(scan: &Measurements) -> String {
     )
 }
 
-fn several_incidences(scan: &Measurements) -> Result<Vec<Incidence>, String> {
+fn several_incidences(scan: &Measurements) -> Result<Vec<Incidence>, TrialError> {
     let incidences = scan.incidences();
     if incidences.len() < 2 {
-        let count = counted(incidences.len(), "incidence");
-        return Err(format!("the scan has {count}: none can be left out"));
+        return Err(TrialError::TooFewIncidences(incidences.len()));
     }
     Ok(incidences)
 }
@@ -65,7 +69,7 @@ mod tests {
 
     use super::*;
 
-    fn lacquer() -> Measurements {
+    fn sample() -> Measurements {
         crate::scan::synthetic::scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5)
     }
 
@@ -76,7 +80,7 @@ mod tests {
 
     #[test]
     fn of_each_incidence_every_second_reading_is_kept() {
-        let (all, half) = (lacquer(), every_reading(&lacquer(), 2));
+        let (all, half) = (sample(), every_reading(&sample(), 2));
         for (all, half) in all.incidences().iter().zip(half.incidences()) {
             assert_eq!(half.psi, all.psi);
             assert_eq!(half.readings.len(), all.readings.len().div_ceil(2));
@@ -85,8 +89,8 @@ mod tests {
     }
 
     #[test]
-    fn incidences_are_left_out_whole() {
-        let scan = lacquer();
+    fn incidences_are_left_out_as_a_whole() {
+        let scan = sample();
         let second = every_second_incidence(&scan).unwrap();
         assert_eq!(psi_deg(&second), [0.0, 20.0, 40.0, 60.0]);
         let smaller = without_largest(&scan).unwrap();
@@ -96,10 +100,14 @@ mod tests {
 
     #[test]
     fn the_only_incidence_cannot_be_left_out() {
-        let scan = lacquer().up_to(0.0);
-        let words = "the scan has 1 incidence: none can be left out";
-        assert_eq!(without_largest(&scan).unwrap_err(), words);
-        assert_eq!(every_second_incidence(&scan).unwrap_err(), words);
+        let scan = sample().up_to(0.0);
+        let error = without_largest(&scan).unwrap_err();
+        assert_eq!(error, TrialError::TooFewIncidences(1));
+        assert_eq!(
+            error.to_string(),
+            "the scan has 1 incidence: none can be left out"
+        );
+        assert_eq!(every_second_incidence(&scan).unwrap_err(), error);
         let empty = Measurements::default();
         assert!(without_largest(&empty).is_err());
         assert_eq!(every_reading(&empty, 4).readings(), []);

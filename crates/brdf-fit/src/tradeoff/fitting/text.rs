@@ -1,16 +1,15 @@
-//! The table that a person reads.
+//! The table of a trade-off of fitting.
 
 use std::fmt::Write as _;
 
-use super::{Alternative, FitTrade, Measured, OfParameter, Outcome};
-use crate::format::{counted, digits};
-use crate::inference::uncertainty::rounded;
+use super::result::{Alternative, FitTradeoff, Measured, OfParameter, Outcome};
+use crate::format::{counted, digits, rounded, shortest};
 
-/// Shifts from here on are written with a power of ten.
+/// Shifts of at least this many standard errors are written in scientific notation.
 const FAR: f64 = 1e4;
 
-impl FitTrade {
-    /// The table: the reference, and a line for each way to fit.
+impl FitTradeoff {
+    /// The table as text: the reference, and a line for each alternative.
     pub fn text(&self) -> String {
         let mut text = self.heading();
         text += &self.columns();
@@ -30,7 +29,7 @@ impl FitTrade {
         format!(
             "{}{sample}\n  {wavelength}, n = {}, {} of {}\n  reference: {}, E = {} %\n\n",
             self.source,
-            crate::format::shortest(reference.parameters.n),
+            shortest(reference.parameters.n),
             counted(reference.readings, "reading"),
             counted(reference.incidences, "incidence"),
             self.reference_parameters(),
@@ -41,7 +40,7 @@ impl FitTrade {
     /// `k2 = 0.02286 +- 0.00050, ...`
     fn reference_parameters(&self) -> String {
         let reference = &self.reference;
-        let words = reference.standard_errors.iter().map(|of| {
+        let values = reference.standard_errors.iter().map(|of| {
             let value = of.parameter.of(&reference.parameters);
             match of.value {
                 None => format!("{} = {}", of.parameter, digits(value)),
@@ -53,7 +52,7 @@ impl FitTrade {
                 ),
             }
         });
-        words.collect::<Vec<_>>().join(", ")
+        values.collect::<Vec<_>>().join(", ")
     }
 
     fn columns(&self) -> String {
@@ -69,9 +68,10 @@ impl FitTrade {
 }
 
 const NOTES: &str = "  \
-  (*: Pareto front, none is faster with no more E; time: median of runs in turns, one thread; excess E:
-  E over all readings / lowest - 1; d: shift from the reference in its standard errors; LM:
-  Levenberg-Marquardt, NM: Nelder-Mead; check: the search over k1; iterations: the most of each stage)
+  (*: on the Pareto front, no alternative is faster without a higher E; time: median of several runs on
+  one thread; excess E: E over all readings / lowest - 1; d: shift from the reference in its standard
+  errors; LM: Levenberg-Marquardt, NM: Nelder-Mead; check: the search over k1; iterations: the limit of
+  each stage)
 ";
 
 fn line(alternative: &Alternative) -> String {
@@ -102,7 +102,7 @@ fn numbers(measured: &Measured) -> String {
     text
 }
 
-/// A shift in hundredths; that of rounding is none.
+/// A shift to two decimals; one below them is `0`.
 fn shift(of: &OfParameter) -> String {
     match of.value {
         None => "-".to_owned(),

@@ -1,10 +1,11 @@
-//! What is tried: one way to fit beside the other.
+//! The ways to fit a scan that are compared.
 
 use std::borrow::Cow;
 use std::fmt;
 
 use brdf_core::ModelParameters;
 
+use super::error::TrialError;
 use super::profile_alone::{Depth, fit_by_profile};
 use super::reduced::{
     every_reading, every_second_incidence, without_largest, without_largest_name,
@@ -15,21 +16,21 @@ use crate::scan::Measurements;
 use crate::solver::{Method, Termination};
 use crate::{FitOptions, Method::LevenbergMarquardt as Lm, Method::NelderMead as Nm};
 
-/// Of each incidence every so-manieth reading.
+/// Of each incidence every `step`-th reading, and the name of that.
 const STEPS: [(usize, &str); 3] = [
     (2, "every 2nd reading"),
     (4, "every 4th reading"),
     (8, "every 8th reading"),
 ];
 
-/// How many readings of a table.
+/// Numbers of readings of the samples of a table.
 const SAMPLES: [usize; 6] = [262_144, 65_536, 16_384, 4096, 1024, 256];
 
-/// Numbers of iterations of each stage.
+/// Largest numbers of iterations of each stage.
 const ITERATIONS: [u64; 5] = [1, 2, 4, 8, 16];
 
-/// The methods of stage 1 and of stage 2, their name, and whether they are tried with the global
-/// check as well.
+/// The methods of stage 1 and of stage 2, their name, and whether they are also tried with the global
+/// check.
 const METHODS: [(Option<Method>, Option<Method>, &str, bool); 8] = [
     (Some(Lm), Some(Lm), "LM", true),
     (None, Some(Lm), "LM, stage 2 only", true),
@@ -45,21 +46,24 @@ const METHODS: [(Option<Method>, Option<Method>, &str, bool); 8] = [
 pub(super) struct Trial<'a> {
     pub(super) name: String,
     pub(super) options: FitOptions,
-    /// The readings that it is given, or why there are none.
-    scan: Result<Cow<'a, Measurements>, String>,
+    /// The readings that it fits, or why the scan has no such readings.
+    scan: Readings<'a>,
     by: By,
 }
 
-/// With what it fits.
+/// All or some of the readings of a scan.
+type Readings<'a> = Result<Cow<'a, Measurements>, TrialError>;
+
+/// The procedure of a trial.
 #[derive(Debug, Clone, Copy)]
 enum By {
     /// The stages of the options.
     Stages,
-    /// The profile alone, at this n where it is not free.
+    /// The profile alone, at this n where that is not free.
     Profile { n: f64, depth: Depth },
 }
 
-/// What a way to fit came to.
+/// The result of a trial.
 pub(super) struct Found {
     pub(super) parameters: ModelParameters,
     pub(super) stages: Stages,
@@ -69,7 +73,7 @@ pub(super) struct Found {
     pub(super) ended_by: String,
 }
 
-/// Which stages a fit has.
+/// The stages of a fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Stages {
     Both,
@@ -97,7 +101,8 @@ impl fmt::Display for Stages {
     }
 }
 
-/// The whole fit: Levenberg-Marquardt in both stages until it ends by itself, and the global check.
+/// The options of the reference: Levenberg-Marquardt in both stages until it converges, and the global
+/// check.
 pub(super) fn reference_options(options: &FitOptions) -> FitOptions {
     let default = FitOptions::default();
     FitOptions {
@@ -109,10 +114,11 @@ pub(super) fn reference_options(options: &FitOptions) -> FitOptions {
     }
 }
 
-/// All that is tried with a scan, the whole fit first.
+/// All trials with a scan, the reference first. `whole` are the options of the reference, and n its
+/// refractive index.
 ///
-/// The global check takes the same time whatever comes before it, and would mend what few
-/// iterations leave undone: it is tried with some methods alone.
+/// The global check takes the same time after any stages and would complete a fit that few
+/// iterations leave unfinished: only some methods are tried with it.
 pub(super) fn trials<'a>(scan: &'a Measurements, whole: &FitOptions, n: f64) -> Vec<Trial<'a>> {
     let mut trials = Vec::new();
     for (stage1, stage2, name, with_check) in METHODS {
@@ -163,8 +169,6 @@ fn without_check(options: &FitOptions) -> FitOptions {
     }
 }
 
-type Readings<'a> = Result<Cow<'a, Measurements>, String>;
-
 fn fewer_readings(scan: &Measurements) -> Vec<(String, Readings<'_>)> {
     let mut fewer: Vec<(String, Readings<'_>)> = if scan.is_table() {
         samples(scan).collect()
@@ -181,7 +185,7 @@ fn fewer_readings(scan: &Measurements) -> Vec<(String, Readings<'_>)> {
     fewer
 }
 
-/// Smaller and smaller samples of a table.
+/// Samples of a table, in descending order of their size.
 fn samples(table: &Measurements) -> impl Iterator<Item = (String, Readings<'_>)> {
     let all = table.readings().len();
     let counts = SAMPLES.into_iter().filter(move |&count| count < all);
@@ -192,7 +196,7 @@ fn samples(table: &Measurements) -> impl Iterator<Item = (String, Readings<'_>)>
 }
 
 impl<'a> Trial<'a> {
-    /// A fit of all readings.
+    /// A fit of all readings by stages.
     fn of(scan: &'a Measurements, name: String, options: FitOptions) -> Self {
         Self {
             name,
@@ -202,7 +206,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// A fit of all readings that has no stages: its options are those of one stage.
+    /// A fit of all readings by the profile. It has no stages; its options are those of a single one.
     fn of_profile(scan: &'a Measurements, name: &str, whole: &FitOptions, by: By) -> Self {
         let options = FitOptions {
             stage1: None,
@@ -216,7 +220,7 @@ impl<'a> Trial<'a> {
 }
 
 impl Trial<'_> {
-    /// Its methods: levenberg-marquardt, nelder-mead, both in their order, or profile.
+    /// The methods: `levenberg-marquardt`, `nelder-mead`, both in their order, or `profile`.
     pub(super) fn method(&self) -> String {
         let (first, last) = (self.options.stage1, self.options.stage2);
         match (self.by, first, last) {
@@ -228,8 +232,8 @@ impl Trial<'_> {
         }
     }
 
-    /// Stages, readings and incidences that it asks for.
-    pub(super) fn asked(&self) -> (Stages, usize, usize) {
+    /// The stages that are requested, and the numbers of readings and incidences.
+    pub(super) fn requested(&self) -> (Stages, usize, usize) {
         let stages = Stages::of(self.options.stage1, self.options.stage2);
         let Ok(scan) = &self.scan else {
             return (stages, 0, 0);
@@ -238,18 +242,18 @@ impl Trial<'_> {
         (stages, fitted.readings().len(), fitted.incidences().len())
     }
 
-    /// Fits.
+    /// Fits the readings of the trial.
     ///
-    /// Errors: why it cannot, in words.
-    pub(super) fn run(&self) -> Result<Found, String> {
-        let scan = self.scan.as_ref().map_err(String::clone)?;
+    /// # Errors
+    ///
+    /// The scan has no such readings, or they cannot be fitted.
+    pub(super) fn run(&self) -> Result<Found, TrialError> {
+        let scan = self.scan.as_ref().map_err(TrialError::clone)?;
         match self.by {
-            By::Stages => fit(scan, &self.options)
-                .map(|fit| Found::of(&fit))
-                .map_err(|error| error.to_string()),
+            By::Stages => Ok(Found::of(&fit(scan, &self.options)?)),
             By::Profile { n, depth } => {
                 let found = fit_by_profile(scan, &self.options, n, depth)?;
-                let (stages, readings, incidences) = self.asked();
+                let (stages, readings, incidences) = self.requested();
                 Ok(Found {
                     parameters: found.parameters,
                     stages,
@@ -267,27 +271,27 @@ impl Found {
     fn of(fit: &Fit) -> Self {
         let last = fit.last_stage();
         let check = fit.global_check.as_ref();
-        let mended = check.is_some_and(|check| check.lower_minimum_taken);
-        let ending = last.map_or_else(String::new, Stage::how_it_ended);
+        let replaced = check.is_some_and(|check| check.lower_minimum_taken);
+        let ended_by = last.map_or_else(String::new, ended_by);
         Self {
             parameters: fit.at(),
             stages: Stages::of(fit.stage1, fit.stage2),
             readings: fit.readings,
             incidences: fit.incidences.len(),
-            converged: mended || last.is_some_and(|s| s.termination != Termination::IterationLimit),
-            ended_by: if mended {
-                format!("{ending}; lower minimum of the check")
+            converged: replaced
+                || last.is_some_and(|s| s.termination != Termination::IterationLimit),
+            ended_by: if replaced {
+                format!("{ended_by}; lower minimum of the check")
             } else {
-                ending
+                ended_by
             },
         }
     }
 }
 
-impl Stage {
-    fn how_it_ended(&self) -> String {
-        format!("{}: {}", self.method.short_name(), self.termination)
-    }
+/// `LM: step too small`.
+fn ended_by(stage: &Stage) -> String {
+    format!("{}: {}", stage.method.short_name(), stage.termination)
 }
 
 #[cfg(test)]
@@ -297,7 +301,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_trial_has_a_name_of_its_own_and_the_whole_fit_is_first() {
+    fn the_names_of_the_trials_differ_and_the_reference_is_first() {
         let scan = crate::scan::synthetic::scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
         let whole = reference_options(&FitOptions::default());
         let trials = trials(&scan, &whole, 1.5);
@@ -310,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn the_whole_fit_ends_by_itself_whatever_the_options_say() {
+    fn the_reference_converges_whatever_the_options_are() {
         let options = FitOptions {
             stage1: None,
             stage2: Some(Nm),
@@ -322,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn of_a_table_there_are_samples() {
+    fn a_table_is_tried_by_samples() {
         let mut table = crate::scan::synthetic::scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5);
         table.incidence_class = Some(0.1);
         table.readings.extend(table.readings.clone());
@@ -331,7 +335,7 @@ mod tests {
             .iter()
             .find(|trial| trial.name == "sample of 256")
             .unwrap();
-        assert_eq!(found.asked().1, 256);
+        assert_eq!(found.requested().1, 256);
         assert!(
             trials
                 .iter()

@@ -1,5 +1,5 @@
-//! The ladder of models and the neighbours on measured samples, against what an independent program
-//! found with n free.
+//! The models of the hierarchy and the reference models on measured samples, against the errors that
+//! an independent program found with n free.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use brdf_fit::model::Model;
 use brdf_fit::{FitOptions, RefractiveIndex, fit};
 use brdf_tests::{in_workspace, one_wavelength, shared_data};
 
-/// E in percent that the independent program gives, with two digits.
+/// File, wavelength in micrometres, model, and E in percent of the independent program to two decimals.
 type Expected = (&'static str, f64, Model, f64);
 
 const PROJECT: [Expected; 8] = [
@@ -87,7 +87,7 @@ fn the_shared_samples_have_the_known_errors() {
 }
 
 #[test]
-fn the_papers_model_wins_on_paint_at_the_given_index_and_ggx_on_anodise() {
+fn at_the_given_index_the_papers_model_is_better_for_paint_and_ggx_for_anodise() {
     let e = |file, model| e_percent(&in_workspace("data/measured"), file, 0.63079, model);
     let paint = "z307_on_aluminium.csv";
     assert!(e(paint, Model::Three) < e(paint, Model::Ggx));

@@ -70,6 +70,8 @@
 //! [`shadowing`] for G over the cosines. f_r and its derivatives consist of operations whose rounding
 //! is defined, so that they have the same digits on every machine.
 
+#![warn(clippy::missing_errors_doc)]
+
 mod brdf;
 mod direction;
 mod direction_pair;

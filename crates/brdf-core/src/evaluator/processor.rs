@@ -1,10 +1,5 @@
 //! The choice of the processor's vectors at run time.
 
-#![expect(
-    clippy::inline_always,
-    reason = "a function that is not inlined is not compiled for the present processor"
-)]
-
 #[cfg(feature = "simd")]
 use std::sync::LazyLock;
 
@@ -52,6 +47,10 @@ impl<K: Kernel> WithSimd for FusedKernel<K> {
     type Output = ();
 
     #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
     fn with_simd<S: Simd>(self, _: S) {
         self.0.run::<true>();
     }

@@ -125,7 +125,7 @@ fn table_json_csv_and_picture_hold_every_alternative() {
     let mut reader = csv::Reader::from_reader(csv.as_slice());
     assert_eq!(reader.headers().unwrap(), &FIT_TRADE_COLUMNS[..]);
     assert_eq!(reader.records().count(), trade.alternatives.len());
-    let figure = trade.figure().unwrap();
+    let figure = trade.figure();
     assert!(figure.png(1.0).is_ok());
     assert!(figure.caption.contains("of zero at the lower edge"));
     for alternative in &trade.alternatives {

@@ -10,7 +10,7 @@ use brdf_core::scene::{Azimuth, Coordinates, Domain, Scene};
 use brdf_core::{AnyBrdf, ModelParameters, ThreeParameterBrdf};
 use brdf_fit::model::Model;
 use brdf_fit::output::{self, check_outputs, complain, write_file, write_json};
-use brdf_fit::plot::{Figure, PlotError};
+use brdf_fit::plot::Figure;
 use brdf_fit::read::{ReadError, ReadOptions, Scan};
 use brdf_fit::report::Document;
 use brdf_fit::trade::evaluators::{EvaluatorTrade, trade_evaluators, write_evaluator_trade};
@@ -326,7 +326,7 @@ impl Outputs {
         text: &str,
         document: &impl Serialize,
         csv: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-        figures: impl IntoIterator<Item = (Option<f64>, Result<Figure, PlotError>)>,
+        figures: impl IntoIterator<Item = (Option<f64>, Figure)>,
     ) -> Result<(), Vec<String>> {
         let mut failed = Vec::new();
         if let Some(path) = &self.csv {
@@ -338,7 +338,7 @@ impl Outputs {
         }
         if let Some(path) = &self.plot {
             for (wavelength_um, figure) in figures {
-                failed.extend(write_picture(&named(path, wavelength_um), figure).err());
+                failed.extend(write_picture(&named(path, wavelength_um), &figure).err());
             }
         }
         let printed = output::print(text.as_bytes());
@@ -355,8 +355,7 @@ impl Outputs {
     }
 }
 
-fn write_picture(path: &Path, figure: Result<Figure, PlotError>) -> Result<(), String> {
-    let figure = figure.map_err(|error| format!("{}: {error}", path.display()))?;
+fn write_picture(path: &Path, figure: &Figure) -> Result<(), String> {
     write_file(path, |writer| writer.write_all(figure.svg.as_bytes()))
         .map_err(|error| error.to_string())
 }

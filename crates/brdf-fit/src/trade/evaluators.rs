@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::pareto::pareto;
 use super::picture::{TradePoint, picture};
-use crate::plot::{Figure, PlotError};
+use crate::plot::Figure;
 use crate::words::{counted, in_degrees};
 
 /// What [`AnyBrdf::value`] is called, point after point.
@@ -260,7 +260,7 @@ impl EvaluatorTrade {
     }
 
     /// Error against time, both logarithmic; the plan's choice is marked.
-    pub fn figure(&self) -> Result<Figure, PlotError> {
+    pub fn figure(&self) -> Figure {
         let point = |evaluator: &MeasuredEvaluator| TradePoint {
             label: evaluator.name.to_owned(),
             x: evaluator.ns_per_evaluation,

@@ -4,7 +4,6 @@
 
 use crate::plot::axis::Axis;
 use crate::plot::canvas::{Canvas, Point, render};
-use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
 use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::legend::{Key, Legend};
@@ -97,18 +96,13 @@ impl TradePoint {
 /// Errors of zero are at the lower edge, which the legend notes. Choices with a cost that is not
 /// positive, a negative error, or a value that is not finite cannot be shown; legend and caption
 /// count them.
-pub fn trade_picture(
-    points: &[TradePoint],
-    x_title: &str,
-    y_title: &str,
-    title: &str,
-) -> Result<Figure, PlotError> {
+pub fn trade_picture(points: &[TradePoint], x_title: &str, y_title: &str, title: &str) -> Figure {
     let trade_off = TradeOff::of(points, [x_title, y_title], title);
-    Ok(Figure {
+    Figure {
         name: "trade".to_owned(),
         caption: trade_off.caption(),
         svg: trade_off.svg(),
-    })
+    }
 }
 
 /// The axes: all positive values, and room below the smallest error for errors of zero.
@@ -369,7 +363,7 @@ mod tests {
     }
 
     fn picture(points: &[TradePoint]) -> Figure {
-        let figure = trade_picture(points, "time / ns", "error", "a title").unwrap();
+        let figure = trade_picture(points, "time / ns", "error", "a title");
         Tree::from_str(&figure.svg, &Options::default()).unwrap();
         assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"));
         figure
@@ -466,7 +460,7 @@ mod tests {
                 )
             })
             .collect();
-        let figure = trade_picture(&points, "cost", "error", "").unwrap();
+        let figure = trade_picture(&points, "cost", "error", "");
         for i in 0..25 {
             let entry = format!(">\n{}\n</text>\n<text", i + 1);
             assert!(figure.svg.contains(&entry), "{i}");

@@ -1,12 +1,12 @@
 //! The picture of the trade: excess E against time.
 
 use super::{Alternative, FitTrade};
-use crate::plot::{Figure, PlotError};
+use crate::plot::Figure;
 use crate::trade::picture::{TradePoint, picture};
 
 impl FitTrade {
     /// Excess E against time, both logarithmic; the whole fit is the chosen one.
-    pub fn figure(&self) -> Result<Figure, PlotError> {
+    pub fn figure(&self) -> Figure {
         let points: Vec<TradePoint> = self
             .alternatives
             .iter()
@@ -18,15 +18,15 @@ impl FitTrade {
             "time of a fit on one thread / us",
             "excess E = E over all readings / lowest - 1",
             &self.title(),
-        )?;
+        );
         let failed = self.alternatives.len() - points.len();
-        Ok(Figure {
+        Figure {
             caption: match failed {
                 0 => figure.caption,
                 _ => format!("{} Not fitted: {failed}.", figure.caption),
             },
             ..figure
-        })
+        }
     }
 
     fn title(&self) -> String {

@@ -29,7 +29,7 @@ const HALF_NUMBER: (f64, f64) = (7.5, 5.5);
 /// Half the side of the square that a mark covers.
 const HALF_MARK: f64 = 3.0;
 
-/// The most numbers that are placed above each other.
+/// The most positions of a number above its mark, and below it.
 const MOST_STACKED: u32 = 12;
 
 /// Distance of the lines of the key.
@@ -268,7 +268,7 @@ fn ring((x, y): Point) -> Vec<Point> {
 }
 
 /// The centres of the numbers of marks. Each is at the first free position of a few beside its mark
-/// and further ones above it: within the area, off all marks and off the numbers before it.
+/// and further ones above and below it: within the area, off all marks and off the numbers before it.
 fn number_points(marks: &[Point], area: &Area) -> Vec<Point> {
     let mut numbers: Vec<Point> = Vec::new();
     for &(x, y) in marks {
@@ -286,8 +286,9 @@ fn number_points(marks: &[Point], area: &Area) -> Vec<Point> {
         // Diagonally beside the mark, because the lines of the front are horizontal and vertical.
         let (dx, dy) = (HALF_NUMBER.0 + 2.0, HALF_NUMBER.1 + 4.0);
         let beside = [(dx, -dy), (-dx, -dy), (-dx, dy), (dx, dy)];
-        let above = (1..=MOST_STACKED).map(|i| (0.0, -dy - NUMBER * f64::from(i)));
-        let candidates = beside.into_iter().chain(above);
+        let stacked =
+            |side: f64| (1..=MOST_STACKED).map(move |i| (0.0, side * (dy + NUMBER * f64::from(i))));
+        let candidates = beside.into_iter().chain(stacked(-1.0)).chain(stacked(1.0));
         let mut candidates = candidates.map(|(dx, dy)| (x + dx, y + dy));
         let number = candidates.find(is_free).unwrap_or((x + dx, y - dy));
         numbers.push(number);

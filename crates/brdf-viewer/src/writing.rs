@@ -69,7 +69,7 @@ fn figure(picture: Picture, layers: &[Layer], view: &View) -> Result<Vec<u8>, St
             family: layer.family,
         })
         .collect();
-    let figure = figure_of(&layers, view).map_err(|error| error.to_string())?;
+    let figure = figure_of(&layers, view);
     match picture {
         Picture::Svg => Ok(figure.svg.into_bytes()),
         Picture::Png => figure.png(PNG_SCALE).map_err(|error| error.to_string()),

@@ -13,7 +13,8 @@ use serde::Serialize;
 
 use super::pareto::pareto;
 use crate::format::{counted, in_degrees};
-use crate::plot::{Figure, PlotError, TradePoint, trade_picture};
+#[cfg(feature = "plot")]
+use crate::plot::{Figure, TradePoint, trade_picture};
 
 /// The name of [`AnyBrdf::value`] called point after point.
 pub const SINGLE_VALUES: &str = "value";
@@ -251,11 +252,8 @@ impl EvaluatorTradeoff {
     }
 
     /// The plot of error against time, both logarithmic, in which the choice of the plan is marked.
-    ///
-    /// # Errors
-    ///
-    /// [`PlotError`] if the plot cannot be drawn.
-    pub fn figure(&self) -> Result<Figure, PlotError> {
+    #[cfg(feature = "plot")]
+    pub fn figure(&self) -> Figure {
         let point = |evaluator: &MeasuredEvaluator| TradePoint {
             label: evaluator.name.to_owned(),
             x: evaluator.ns_per_evaluation,

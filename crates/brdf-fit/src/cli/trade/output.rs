@@ -9,10 +9,10 @@ use super::arguments::Outputs;
 use crate::cli::failure::Failure;
 use crate::cli::stream::{self, Named};
 use crate::output;
-use crate::plot::{Figure, PlotError};
+use crate::plot::Figure;
 
 /// A figure, and the wavelength in the name of its file if there are several.
-type Drawn = (Option<f64>, Result<Figure, PlotError>);
+type Drawn = (Option<f64>, Figure);
 
 impl Outputs {
     /// Checks that no output replaces the input or another output, and that each standard stream is
@@ -68,12 +68,11 @@ fn write_figures(path: &Path, figures: Vec<Drawn>) -> Vec<Failure> {
     }
     let written = figures
         .into_iter()
-        .map(|(wavelength_um, figure)| write_figure(&named(path, wavelength_um), figure));
+        .map(|(wavelength_um, figure)| write_figure(&named(path, wavelength_um), &figure));
     written.filter_map(Result::err).collect()
 }
 
-fn write_figure(path: &Path, figure: Result<Figure, PlotError>) -> Result<(), Failure> {
-    let figure = figure.map_err(|error| Failure::from(error).in_file(path))?;
+fn write_figure(path: &Path, figure: &Figure) -> Result<(), Failure> {
     let svg = figure.svg.as_bytes();
     Ok(stream::write(path, |writer| writer.write_all(svg))?)
 }

@@ -6,7 +6,6 @@ use super::{polar, residuals, theory};
 use crate::plot::axis::Axis;
 use crate::plot::canvas::Canvas;
 use crate::plot::curves::StandardError;
-use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
 use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::style::TEXT;
@@ -56,7 +55,7 @@ pub struct Layer<'a> {
 
 /// The figure of one or several samples, arranged as `view` asks for: together, in panels or in the
 /// polar form, with or without the residuals below.
-pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
+pub fn figure_of(layers: &[Layer], view: &View) -> Figure {
     let curves = curves(layers, view);
     let title = title(layers);
     let axis = theory::axis(&curves, view.scale);
@@ -71,7 +70,7 @@ pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
         panels_svg(&title, &curves, &axis, note.as_deref())
     };
     let note = note.map_or_else(String::new, |note| format!(" {note}."));
-    Ok(Figure {
+    Figure {
         name: "view".to_owned(),
         caption: format!(
             "Theory against experiment: {} over the view angle. Marks: readings. Lines: {}.{}{note}",
@@ -80,7 +79,7 @@ pub fn figure_of(layers: &[Layer], view: &View) -> Result<Figure, PlotError> {
             curves.left_out
         ),
         svg,
-    })
+    }
 }
 
 fn curves(layers: &[Layer], view: &View) -> Curves {
@@ -315,7 +314,7 @@ mod tests {
                 layout,
                 ..View::default()
             };
-            let svg = figure_of(&layers, &view).unwrap().svg;
+            let svg = figure_of(&layers, &view).svg;
             assert!(!svg.contains("curves are named"), "{layout:?}");
             for i in 0..4 {
                 assert!(svg.contains(&format!("piece {i}: three: k2")), "{layout:?}");

@@ -5,7 +5,6 @@
 use crate::format::counted;
 use crate::plot::axis::Axis;
 use crate::plot::canvas::{Canvas, Point, render};
-use crate::plot::error::PlotError;
 use crate::plot::figure::Figure;
 use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::legend::{Key, Legend};
@@ -30,7 +29,7 @@ const HALF_NUMBER: (f64, f64) = (7.5, 5.5);
 /// Half the side of the square that a mark covers.
 const HALF_MARK: f64 = 3.0;
 
-/// The most numbers that are placed above each other.
+/// The most positions of a number above its mark, and below it.
 const MOST_STACKED: u32 = 12;
 
 /// Distance of the lines of the key.
@@ -97,18 +96,13 @@ impl TradePoint {
 /// Errors of zero are at the lower edge, which the legend notes. Choices with a cost that is not
 /// positive, a negative error, or a value that is not finite cannot be shown; legend and caption
 /// count them.
-pub fn trade_picture(
-    points: &[TradePoint],
-    x_title: &str,
-    y_title: &str,
-    title: &str,
-) -> Result<Figure, PlotError> {
+pub fn trade_picture(points: &[TradePoint], x_title: &str, y_title: &str, title: &str) -> Figure {
     let trade_off = TradeOff::of(points, [x_title, y_title], title);
-    Ok(Figure {
+    Figure {
         name: "trade".to_owned(),
         caption: trade_off.caption(),
         svg: trade_off.svg(),
-    })
+    }
 }
 
 /// The axes: all positive values, and room below the smallest error for errors of zero.
@@ -274,7 +268,7 @@ fn ring((x, y): Point) -> Vec<Point> {
 }
 
 /// The centres of the numbers of marks. Each is at the first free position of a few beside its mark
-/// and further ones above it: within the area, off all marks and off the numbers before it.
+/// and further ones above and below it: within the area, off all marks and off the numbers before it.
 fn number_points(marks: &[Point], area: &Area) -> Vec<Point> {
     let mut numbers: Vec<Point> = Vec::new();
     for &(x, y) in marks {
@@ -292,8 +286,9 @@ fn number_points(marks: &[Point], area: &Area) -> Vec<Point> {
         // Diagonally beside the mark, because the lines of the front are horizontal and vertical.
         let (dx, dy) = (HALF_NUMBER.0 + 2.0, HALF_NUMBER.1 + 4.0);
         let beside = [(dx, -dy), (-dx, -dy), (-dx, dy), (dx, dy)];
-        let above = (1..=MOST_STACKED).map(|i| (0.0, -dy - NUMBER * f64::from(i)));
-        let candidates = beside.into_iter().chain(above);
+        let stacked =
+            |side: f64| (1..=MOST_STACKED).map(move |i| (0.0, side * (dy + NUMBER * f64::from(i))));
+        let candidates = beside.into_iter().chain(stacked(-1.0)).chain(stacked(1.0));
         let mut candidates = candidates.map(|(dx, dy)| (x + dx, y + dy));
         let number = candidates.find(is_free).unwrap_or((x + dx, y - dy));
         numbers.push(number);
@@ -369,7 +364,7 @@ mod tests {
     }
 
     fn picture(points: &[TradePoint]) -> Figure {
-        let figure = trade_picture(points, "time / ns", "error", "a title").unwrap();
+        let figure = trade_picture(points, "time / ns", "error", "a title");
         Tree::from_str(&figure.svg, &Options::default()).unwrap();
         assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"));
         figure
@@ -466,7 +461,7 @@ mod tests {
                 )
             })
             .collect();
-        let figure = trade_picture(&points, "cost", "error", "").unwrap();
+        let figure = trade_picture(&points, "cost", "error", "");
         for i in 0..25 {
             let entry = format!(">\n{}\n</text>\n<text", i + 1);
             assert!(figure.svg.contains(&entry), "{i}");

@@ -1,15 +1,11 @@
 //! The figure of a trade-off of fitting: excess E against time.
 
 use super::result::{Alternative, FitTradeoff};
-use crate::plot::{Figure, PlotError, TradePoint, trade_picture};
+use crate::plot::{Figure, TradePoint, trade_picture};
 
 impl FitTradeoff {
     /// Excess E against time on logarithmic axes. The reference is marked as the chosen alternative.
-    ///
-    /// # Errors
-    ///
-    /// The figure cannot be drawn.
-    pub fn figure(&self) -> Result<Figure, PlotError> {
+    pub fn figure(&self) -> Figure {
         let points: Vec<TradePoint> = self
             .alternatives
             .iter()
@@ -21,15 +17,15 @@ impl FitTradeoff {
             "time of a fit on one thread / us",
             "excess E = E over all readings / lowest - 1",
             &self.title(),
-        )?;
+        );
         let failed = self.alternatives.len() - points.len();
-        Ok(Figure {
+        Figure {
             caption: match failed {
                 0 => figure.caption,
                 _ => format!("{} Not fitted: {failed}.", figure.caption),
             },
             ..figure
-        })
+        }
     }
 
     fn title(&self) -> String {

@@ -22,6 +22,7 @@
 mod compare;
 mod csv;
 mod error;
+#[cfg(feature = "plot")]
 mod figure;
 mod profile_alone;
 mod reduced;

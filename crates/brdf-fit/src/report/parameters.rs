@@ -40,26 +40,25 @@ fn detailed_row(estimate: &Estimate, bootstrap: String) -> Row {
             interval_68,
             interval_95,
         } => {
-            let digits = |x: f64| rounded(x, *standard_error);
+            let rounded = |x: f64| rounded(x, *standard_error);
             Row::new([
                 name,
-                digits(value),
-                digits(*standard_error),
-                interval(interval_68, digits),
-                interval(interval_95, digits),
+                rounded(value),
+                rounded(*standard_error),
+                interval(interval_68, rounded),
+                interval(interval_95, rounded),
                 bootstrap,
             ])
         }
         Knowledge::OnBound { interval_95 } => {
             let width = |end: Option<f64>| end.map_or(0.0, |end| (end - value).abs());
             let error = 0.3 * width(interval_95.from).max(width(interval_95.to));
-            let digits = |x: f64| rounded(x, error);
             Row::new([
                 name,
                 digits(value),
                 "on its bound".to_owned(),
                 String::new(),
-                interval(interval_95, digits),
+                interval(interval_95, |x| rounded(x, error)),
                 bootstrap,
             ])
         }

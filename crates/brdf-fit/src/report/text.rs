@@ -326,7 +326,7 @@ fn cross_validation_lines(fit: &Fit, assessment: &Assessment) -> String {
     let _ = match &assessment.cross_validation {
         Some(prediction) => writeln!(
             text,
-            "\n  leave-one-incidence-out cross-validation: E = {} % (the fit: {} %)",
+            "\n  leave-one-incidence-out cross-validation: E = {} % (fit to all incidences: {} %)",
             digits(prediction.e_percent),
             digits(assessment.e_percent)
         ),

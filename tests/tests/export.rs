@@ -15,13 +15,13 @@ const BAD: i32 = 2;
 const SCANS: [&str; 2] = ["table1_001_0.44um.csv", "table1_002_0.62um.csv"];
 const SPECTRUM: &str = "tests/data/formats/black_lab.txt";
 
-/// The fits of a test.
+/// A folder with the fits of some scans.
 struct Fits {
     folder: TempDir,
 }
 
 impl Fits {
-    /// Fits files of the workspace.
+    /// Fits scans of the workspace.
     fn of(files: &[PathBuf]) -> Self {
         let fits = Self {
             folder: tempfile::tempdir().unwrap(),
@@ -67,7 +67,7 @@ fn exported(fits: &Path, arguments: &[&str]) -> String {
     text(&output.stdout)
 }
 
-/// What is said where nothing is exported.
+/// The message where nothing is exported.
 fn refused(fits: &Path, arguments: &[&str]) -> String {
     let output = export(fits, arguments);
     assert_eq!(
@@ -78,10 +78,10 @@ fn refused(fits: &Path, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn the_json_of_a_model_is_read_again_as_the_fits_that_it_was_made_of() {
+fn the_json_of_a_model_is_read_again_as_the_fits_that_were_exported() {
     let fits = Fits::of_scans(2);
     let path = fits.path("model.json");
-    // Without -o to standard output, with it to the file alone.
+    // Without -o to standard output, with it to the file only.
     let printed = exported(&fits.json(), &["--to", "json", "--file", SCANS[0]]);
     let to_file = [
         "--to",
@@ -98,10 +98,10 @@ fn the_json_of_a_model_is_read_again_as_the_fits_that_it_was_made_of() {
         let of_fits = exported(&fits.json(), &["--to", to, "--file", SCANS[0]]);
         assert_eq!(exported(&path, &["--to", to]), of_fits);
     }
-    let coating = Material::read(&path).unwrap();
+    let material = Material::read(&path).unwrap();
     let document = Document::read(fits.json()).unwrap();
     let parameters = document.reports[0].fit.as_ref().unwrap().parameters;
-    let at = coating.only().unwrap().brdf.model_parameters();
+    let at = material.only().unwrap().brdf.model_parameters();
     assert_eq!(
         [at.k2, at.kd, at.k1, at.n],
         [parameters.k2, parameters.kd, parameters.k1, 1.5]
@@ -109,13 +109,13 @@ fn the_json_of_a_model_is_read_again_as_the_fits_that_it_was_made_of() {
 }
 
 #[test]
-fn an_output_does_not_take_the_place_of_the_fits() {
+fn the_output_does_not_overwrite_the_fits() {
     let fits = Fits::of_scans(1);
     let (path, before) = (fits.json(), fs::read(fits.json()).unwrap());
-    let said = refused(&path, &["--to", "json", "-o", path.to_str().unwrap()]);
+    let message = refused(&path, &["--to", "json", "-o", path.to_str().unwrap()]);
     assert!(
-        said.contains("is an input or another output of this command"),
-        "{said}"
+        message.contains("is an input or another output of this command"),
+        "{message}"
     );
     assert_eq!(fs::read(path).unwrap(), before);
 }
@@ -131,14 +131,15 @@ fn one_of_several_files_is_chosen_by_its_name() {
             .to_string()
     };
     let files = format!("{}, {}", scan(SCANS[0]), scan(SCANS[1]));
-    let said = refused(&fits.json(), &c);
-    let expected = format!(
-        "error: {path}: there are several fits: expected one of {files} to be chosen with --file\n"
+    let message = refused(&fits.json(), &c);
+    let expected = format!("error: {path}: there are fits of several files: choose one of {files}");
+    assert!(
+        message.starts_with(&expected) && message.contains("--file"),
+        "{message}"
     );
-    assert_eq!(said, expected);
-    let said = refused(&fits.json(), &["--to", "c", "--file", "none.csv"]);
+    let message = refused(&fits.json(), &["--to", "c", "--file", "none.csv"]);
     assert_eq!(
-        said,
+        message,
         format!("error: {path}: no fit of none.csv: expected one of {files}\n")
     );
     let by_name = exported(&fits.json(), &["--to", "c", "--file", SCANS[1]]);
@@ -150,40 +151,42 @@ fn one_of_several_files_is_chosen_by_its_name() {
 #[test]
 fn one_of_several_wavelengths_is_chosen() {
     let fits = Fits::of(&[in_workspace(SPECTRUM)]);
-    let said = refused(&fits.json(), &["--to", "c"]);
-    let several = "there are several fits: expected one of 0.62 um, 0.85223 um to be chosen with \
-                   --wavelength\n";
-    assert!(said.ends_with(several), "{said}");
-    let said = refused(&fits.json(), &["--to", "c", "--wavelength", "0.7"]);
+    let message = refused(&fits.json(), &["--to", "c"]);
+    let several = "there are several fits: choose one of the wavelengths 0.62 um, 0.85223 um";
+    assert!(
+        message.contains(several) && message.contains("--wavelength"),
+        "{message}"
+    );
+    let message = refused(&fits.json(), &["--to", "c", "--wavelength", "0.7"]);
     let path = fits.json().display().to_string();
     let expected =
-        format!("error: {path}: no fit of 0.7 um: expected one of 0.62 um, 0.85223 um\n");
-    assert_eq!(said, expected);
+        format!("error: {path}: no fit at 0.7 um: expected one of 0.62 um, 0.85223 um\n");
+    assert_eq!(message, expected);
     let near = exported(&fits.json(), &["--to", "c", "--wavelength", "0.85"]);
     assert!(near.contains("0.85223"), "{near}");
 }
 
 #[test]
-fn a_form_that_is_none_lists_those_that_are() {
+fn an_unknown_format_is_reported_with_the_known_ones() {
     let fits = Fits::of_scans(1);
-    let said = refused(&fits.json(), &["--to", "obj"]);
+    let message = refused(&fits.json(), &["--to", "obj"]);
     let names = "expected one of json, c, glsl, wgsl, osl, python, mitsuba, merl, astm, zemax, csv";
     assert!(
-        said.contains(&format!("\"obj\" is not a format: {names}")),
-        "{said}"
+        message.contains(&format!("\"obj\" is not a format: {names}")),
+        "{message}"
     );
 }
 
 #[test]
-fn what_holds_no_fits_is_told_with_its_path() {
+fn a_file_without_fits_is_reported_with_its_path() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.json");
-    let said = refused(&path, &["--to", "c"]);
+    let message = refused(&path, &["--to", "c"]);
     assert!(
-        said.starts_with(&format!("error: {}: cannot be read: ", path.display())),
-        "{said}"
+        message.starts_with(&format!("error: {}: cannot be read: ", path.display())),
+        "{message}"
     );
-    for (content, message) in [
+    for (content, expected) in [
         (
             "psi_deg",
             ", line 1, column 1: expected value: expected JSON with a document of fits",
@@ -198,12 +201,12 @@ fn what_holds_no_fits_is_told_with_its_path() {
         ),
         (
             "{\"format_version\": 1, \"fits\": []}",
-            ": holds no fit: expected a model of at least one",
+            ": contains no fit: expected a model of at least one",
         ),
     ] {
         fs::write(&path, content).unwrap();
-        let said = refused(&path, &["--to", "c", "--wavelength", "0.5"]);
-        assert_eq!(said, format!("error: {}{message}\n", path.display()));
+        let message = refused(&path, &["--to", "c", "--wavelength", "0.5"]);
+        assert_eq!(message, format!("error: {}{expected}\n", path.display()));
     }
 }
 
@@ -231,10 +234,10 @@ fn a_tolerance_is_above_0_and_below_1() {
     let fits = Fits::of_scans(1);
     for tolerance in ["0", "1", "-0.1", "NaN", "small"] {
         let option = format!("--tolerance={tolerance}");
-        let said = refused(&fits.json(), &["--to", "astm", &option]);
+        let message = refused(&fits.json(), &["--to", "astm", &option]);
         assert!(
-            said.contains("expected a number above 0 and below 1"),
-            "{said}"
+            message.contains("expected a number above 0 and below 1"),
+            "{message}"
         );
     }
 }
@@ -248,9 +251,9 @@ fn an_option_without_effect_on_the_format_is_an_error() {
         ("astm", "rgb", "0.6,0.5,0.4"),
         ("json", "name", "paint"),
     ] {
-        let said = refused(&fits.json(), &["--to", form, &format!("--{option}"), value]);
+        let message = refused(&fits.json(), &["--to", form, &format!("--{option}"), value]);
         assert_eq!(
-            said,
+            message,
             format!("error: --{option} has no effect on the format {form}\n")
         );
     }

@@ -19,7 +19,7 @@ use tempfile::TempDir;
 const SCALAR: &str = "scalar_rgb";
 const LLVM: &str = "llvm_ad_rgb";
 
-/// Red, green and blue: the wavelengths of a made-up coating in micrometres.
+/// Red, green and blue: the wavelengths of a made-up material in micrometres.
 const WAVELENGTHS_UM: [f64; 3] = [0.62, 0.55, 0.46];
 
 /// The exported plugins of a test, each under a name of its own.
@@ -40,15 +40,15 @@ impl Plugins {
     /// Exports the BRDFs of one wavelength or of three.
     fn export(&self, name: &str, brdfs: &[AnyBrdf]) -> PathBuf {
         let plugin = self.path(&format!("{name}.py"));
-        let output = self.try_export(&coating(brdfs), &["--name", name], &plugin);
+        let output = self.try_export(&material(brdfs), &["--name", name], &plugin);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         plugin
     }
 
-    fn try_export(&self, coating: &Material, options: &[&str], plugin: &Path) -> Output {
+    fn try_export(&self, material: &Material, options: &[&str], plugin: &Path) -> Output {
         let fits = self.path("fits.json");
         let mut bytes = Vec::new();
-        coating.write(&mut bytes).unwrap();
+        material.write(&mut bytes).unwrap();
         fs::write(&fits, bytes).unwrap();
         let mut command = export_command();
         command.arg(&fits).args(["--to", "mitsuba"]).args(options);
@@ -56,7 +56,7 @@ impl Plugins {
     }
 }
 
-fn coating(brdfs: &[AnyBrdf]) -> Material {
+fn material(brdfs: &[AnyBrdf]) -> Material {
     let fits = brdfs.iter().zip(WAVELENGTHS_UM).map(|(brdf, um)| Fitted {
         file: "made-up.csv".to_owned(),
         wavelength_um: Some(um),
@@ -104,7 +104,7 @@ fn of_all_families(widths: &[f64]) -> Vec<(String, AnyBrdf)> {
     all
 }
 
-/// A coating whose colours differ in everything.
+/// A material whose colours differ in everything.
 fn colourful() -> [AnyBrdf; 3] {
     [
         brdf(Family::Paper, [0.6, 0.05, 0.09, 1.5, 1.0]),
@@ -118,9 +118,12 @@ fn direction(zenith: f64, azimuth: f64) -> [f64; 3] {
     rounded([zenith.sin() * cos, zenith.sin() * sin, zenith.cos()])
 }
 
-/// As Mitsuba has it.
+/// In single precision, as in Mitsuba.
 fn rounded(direction: [f64; 3]) -> [f64; 3] {
-    #[expect(clippy::cast_possible_truncation, reason = "that is what it is for")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the function rounds to single precision"
+    )]
     direction.map(|x| f64::from(x as f32))
 }
 
@@ -146,9 +149,10 @@ fn geometry([source, view]: &[[f64; 3]; 2]) -> Geometry {
     Geometry::from_directions(&unit(source), &unit(view)).unwrap()
 }
 
-/// The errors of what Mitsuba found over what they may be; at most 1 where all is well. Allowed are
-/// 1e-5 of the value, and to the density what one of its weights may lose to rounding: where 1 - w_s
-/// is small, it is not small beside it. (Directions are drawn by the same rounded weight.)
+/// The largest error of Mitsuba's results, as a multiple of the tolerance: at most 1 in a passing test.
+/// The tolerance is 1e-5 of the value. That of the density includes the rounding error of its weights,
+/// which is not small in comparison with 1 - w_s where that is small. (Directions are drawn with the
+/// same rounded weight.)
 fn excess(found: &Value, channels: &[AnyBrdf; 3], pairs: &[[[f64; 3]; 2]]) -> f64 {
     let geometries: Vec<_> = pairs.iter().map(geometry).collect();
     let mut largest: f64 = 0.0;
@@ -373,7 +377,7 @@ fn render(plugin: &Path, arguments: &[&str]) -> Option<Output> {
 }
 
 #[test]
-fn the_scene_shows_the_coating_and_its_highlight() {
+fn the_scene_shows_the_material_and_its_highlight() {
     let plugins = Plugins::new();
     let plugin = plugins.export("colourful", &colourful());
     let scene = plugin.with_extension("xml");
@@ -429,7 +433,7 @@ fn the_scene_shows_the_coating_and_its_highlight() {
 #[test]
 fn from_a_scan_to_a_picture_in_three_commands() {
     let plugins = Plugins::new();
-    let (fits, plugin) = (plugins.path("fit.json"), plugins.path("coating.py"));
+    let (fits, plugin) = (plugins.path("fit.json"), plugins.path("material.py"));
     let scan = in_workspace("data/measured/z307_on_aluminium.csv");
     let output = run_fit([
         scan.as_os_str(),
@@ -450,24 +454,24 @@ fn from_a_scan_to_a_picture_in_three_commands() {
     };
     assert!(output.status.success(), "{}", stderr(&output));
     let picture = plugin.with_extension("png");
-    let said = String::from_utf8(output.stdout).unwrap();
+    let message = String::from_utf8(output.stdout).unwrap();
     assert!(
-        said.contains(&format!("written: {}", picture.display())),
-        "{said}"
+        message.contains(&format!("written: {}", picture.display())),
+        "{message}"
     );
     assert!(fs::read(picture).unwrap().starts_with(b"\x89PNG"));
 }
 
 #[test]
-fn two_files_are_written_and_said() {
+fn two_files_are_written_and_named() {
     let plugins = Plugins::new();
-    let plugin = plugins.path("coating.py");
-    let output = plugins.try_export(&coating(&colourful()), &[], &plugin);
+    let plugin = plugins.path("material.py");
+    let output = plugins.try_export(&material(&colourful()), &[], &plugin);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-    let said = String::from_utf8(output.stdout).unwrap();
+    let message = String::from_utf8(output.stdout).unwrap();
     let scene = plugin.with_extension("xml");
     assert_eq!(
-        said,
+        message,
         format!("written: {}, {}\n", plugin.display(), scene.display())
     );
     assert!(
@@ -480,12 +484,12 @@ fn two_files_are_written_and_said() {
 #[test]
 fn what_cannot_be_written_is_not_written_in_part() {
     let plugins = Plugins::new();
-    let plugin = plugins.path("coating.py");
+    let plugin = plugins.path("material.py");
     fs::create_dir(plugin.with_extension("xml")).unwrap();
-    let output = plugins.try_export(&coating(&colourful()), &[], &plugin);
+    let output = plugins.try_export(&material(&colourful()), &[], &plugin);
     assert_eq!(output.status.code(), Some(2));
     assert!(
-        stderr(&output).contains("coating.xml: cannot be written"),
+        stderr(&output).contains("material.xml: cannot be written"),
         "{}",
         stderr(&output)
     );
@@ -493,27 +497,36 @@ fn what_cannot_be_written_is_not_written_in_part() {
 }
 
 #[test]
-fn bad_usage_is_said() {
+fn bad_usage_is_reported() {
     let plugins = Plugins::new();
-    let plugin = plugins.path("coating.py");
-    let refused = |coating: &Material, options: &[&str], plugin: &Path| {
-        let output = plugins.try_export(coating, options, plugin);
+    let plugin = plugins.path("material.py");
+    let refused = |material: &Material, options: &[&str], plugin: &Path| {
+        let output = plugins.try_export(material, options, plugin);
         assert_eq!(output.status.code(), Some(2));
         assert!(!plugin.exists());
         stderr(&output)
     };
-    let colourful = coating(&colourful());
-    let said = refused(&colourful, &[], &plugins.path("coating.xml"));
-    assert!(said.contains("is an input or another output"), "{said}");
-    let said = refused(&colourful, &["--rgb", "0.62,0.55"], &plugin);
-    assert!(said.contains("expected three numbers"), "{said}");
-    let said = refused(&colourful, &["--rgb", "0.62,0.55,0.7"], &plugin);
-    assert!(said.contains("no fit of 0.7 um: expected one of"), "{said}");
+    let colourful = material(&colourful());
+    let message = refused(&colourful, &[], &plugins.path("material.xml"));
+    assert!(
+        message.contains("is an input or another output"),
+        "{message}"
+    );
+    let message = refused(&colourful, &["--rgb", "0.62,0.55"], &plugin);
+    assert!(message.contains("expected three numbers"), "{message}");
+    let message = refused(&colourful, &["--rgb", "0.62,0.55,0.7"], &plugin);
+    assert!(
+        message.contains("no fit at 0.7 um: expected one of"),
+        "{message}"
+    );
     let two = Material {
         fits: colourful.fits[..2].to_vec(),
     };
-    let said = refused(&two, &[], &plugin);
-    assert!(said.contains("no fit within 0.06 um of blue"), "{said}");
+    let message = refused(&two, &[], &plugin);
+    assert!(
+        message.contains("no fit within 0.06 um of blue"),
+        "{message}"
+    );
     let output = plugins.try_export(&two, &["--rgb", "0.62,0.55,0.55"], &plugin);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
 
@@ -531,7 +544,7 @@ fn bad_usage_is_said() {
 }
 
 #[test]
-fn a_polarised_variant_is_refused_in_words() {
+fn a_polarised_variant_is_refused_with_a_message() {
     let plugins = Plugins::new();
     let plugin = plugins.export("grey", &[colourful()[0]]);
     let Some(output) = render(&plugin, &["--variant", "scalar_spectral_polarized"]) else {

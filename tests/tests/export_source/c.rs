@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters};
 use brdf_fit::export::Language;
 
-use crate::coatings::{brdfs, source};
+use crate::materials::{brdfs, source};
 use crate::points::{Errors, Found, Point, SINGLE, check_double, check_single, points, relative};
 use crate::reference::{Reference, reference};
 
@@ -25,13 +25,13 @@ const OPTIONS_SINGLE: [&[&str]; 2] = [
     &["-O2", "-DBRDF_SINGLE"],
 ];
 
-/// Evaluates the points of the standard input, all for each of the coatings.
+/// Evaluates the points of the standard input, all for each of the materials.
 const EVALUATE: &str = r#"
 #include <stdio.h>
 
 static double points[1000][12];
 
-#define COATING(NAME) \
+#define MATERIAL(NAME) \
     for (int i = 0; i < count; ++i) { \
         NAME##_real p[12], view[3], density; \
         for (int j = 0; j < 12; ++j) p[j] = (NAME##_real)points[i][j]; \
@@ -116,7 +116,7 @@ fn numbers(program: &Path, input: impl IntoIterator<Item = f64>) -> Vec<f64> {
         .expect("a thread")
         .expect("the input is taken");
     let text = String::from_utf8(output.stdout).expect("text");
-    // A sign before what is no number is the library's whim.
+    // Whether NaN is printed with a sign depends on the C library.
     let words = text.split_whitespace().map(|word| match word {
         "-nan" => f64::NAN,
         _ => word.parse().expect("a number"),
@@ -124,15 +124,15 @@ fn numbers(program: &Path, input: impl IntoIterator<Item = f64>) -> Vec<f64> {
     words.collect()
 }
 
-/// What the sources of some coatings give at points, all in one program.
+/// The results of the sources of several materials at points, all in one program.
 fn found(brdfs: &[AnyBrdf], points: &[Point], options: &[&str]) -> Vec<Vec<Found>> {
     let folder = tempfile::tempdir().expect("a folder");
     let (mut head, mut calls) = (String::new(), String::new());
     for (i, brdf) in brdfs.iter().enumerate() {
-        let text = source(brdf, Language::C, &format!("coating{i}"));
+        let text = source(brdf, Language::C, &format!("material{i}"));
         fs::write(folder.path().join(format!("{i}.h")), text).expect("a file");
         let _ = writeln!(head, "#include \"{i}.h\"");
-        let _ = writeln!(calls, "    COATING(coating{i})");
+        let _ = writeln!(calls, "    MATERIAL(material{i})");
     }
     let program = format!("{head}{EVALUATE}{calls}    return 0;\n}}\n");
     let program = compiled(folder.path(), &program, options);
@@ -256,7 +256,7 @@ fn at_single_angles(point: &Reference) -> f64 {
 }
 
 #[test]
-fn below_the_surface_is_0_and_outside_the_domain_no_number() {
+fn f_r_is_0_below_the_surface_and_nan_outside_the_domain() {
     if !gcc() {
         return;
     }

@@ -1,4 +1,4 @@
-//! The program: what it writes, and what it says where it cannot.
+//! The program `export`: the sources it writes, and its messages.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use brdf_core::{AnyBrdf, Family, ModelParameters};
 use brdf_fit::export::{Fitted, Language, Material};
 use brdf_tests::export_command;
 
-use crate::coatings::source;
+use crate::materials::source;
 use crate::shader::from_glsl;
 
 const LANGUAGES: [(Language, &str); 5] = [
@@ -30,7 +30,7 @@ fn brdf(k1: f64) -> AnyBrdf {
 }
 
 /// The fits of wavelengths, in a file.
-fn coating(folder: &Path, wavelengths_um: &[f64]) -> PathBuf {
+fn material(folder: &Path, wavelengths_um: &[f64]) -> PathBuf {
     let fits = wavelengths_um.iter().map(|um| Fitted {
         file: "data/scan.csv".to_owned(),
         wavelength_um: Some(*um),
@@ -38,20 +38,20 @@ fn coating(folder: &Path, wavelengths_um: &[f64]) -> PathBuf {
         e_percent: 1.25,
         psi_max_deg: 70.0,
     });
-    let coating = Material {
+    let material = Material {
         fits: fits.collect(),
     };
     let mut bytes = Vec::new();
-    coating.write(&mut bytes).expect("a coating");
-    let path = folder.join("coating.json");
+    material.write(&mut bytes).expect("a material");
+    let path = folder.join("material.json");
     fs::write(&path, bytes).expect("a file");
     path
 }
 
 #[test]
-fn a_coating_is_written_in_every_language() {
+fn a_material_is_written_in_every_language() {
     let folder = tempfile::tempdir().expect("a folder");
-    let fits = coating(folder.path(), &[0.63]);
+    let fits = material(folder.path(), &[0.63]);
     for (language, name) in LANGUAGES {
         let output = export_command().arg(&fits).args(["--to", name]).output();
         let output = output.expect("the program starts");
@@ -68,7 +68,7 @@ fn a_coating_is_written_in_every_language() {
 #[test]
 fn several_wavelengths_are_written_one_by_one() {
     let folder = tempfile::tempdir().expect("a folder");
-    let fits = coating(folder.path(), &[0.45, 0.55, 0.63]);
+    let fits = material(folder.path(), &[0.45, 0.55, 0.63]);
     let together = export_command().arg(&fits).args(["--to", "glsl"]).output();
     let together = together.expect("the program starts");
     let message = String::from_utf8_lossy(&together.stderr).into_owned();
@@ -99,9 +99,9 @@ fn several_wavelengths_are_written_one_by_one() {
 }
 
 #[test]
-fn a_name_that_is_none_is_refused() {
+fn a_name_that_is_no_identifier_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
-    let fits = coating(folder.path(), &[0.63]);
+    let fits = material(folder.path(), &[0.63]);
     for name in [
         "",
         "2k",
@@ -121,6 +121,9 @@ fn a_name_that_is_none_is_refused() {
         let output = output.expect("the program starts");
         let message = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{name}");
-        assert!(message.contains("no name in source code"), "{message}");
+        assert!(
+            message.contains("is not a name in source code"),
+            "{message}"
+        );
     }
 }

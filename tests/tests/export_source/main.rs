@@ -1,10 +1,10 @@
-//! The exported sources, each checked by what no one here wrote: naga for the languages of shaders,
-//! a C compiler, NumPy, and the compiler of the Open Shading Language.
+//! The exported sources, each checked with an independent implementation of its language: naga for
+//! GLSL and WGSL, a C compiler, NumPy, and the compiler of the Open Shading Language.
 
 mod c;
 mod cli;
-mod coatings;
 mod interpreter;
+mod materials;
 mod numpy;
 mod osl;
 mod points;

@@ -9,24 +9,24 @@ use brdf_core::{AnyBrdf, Family, ModelParameters};
 use brdf_fit::export::Language;
 use brdf_tests::python;
 
-use crate::coatings::{brdfs, source};
+use crate::materials::{brdfs, source};
 use crate::points::{Errors, Found, Point, check_double, points, relative};
 use crate::reference::reference;
 
-/// Prints what each coating gives at each point.
+/// Prints the results of each material at each point.
 const EVALUATE: &str = "
 import glob
 import numpy as np
 
-for file in sorted(glob.glob('coating*.py')):
-    coating = __import__(file[:-3])
+for file in sorted(glob.glob('material*.py')):
+    material = __import__(file[:-3])
     points = np.loadtxt(file.replace('.py', '.txt'))
     angles, source, view, numbers = np.split(points, 4, axis=1)
-    drawn, density, weight = coating.brdf_sample(source, numbers)
+    drawn, density, weight = material.brdf_sample(source, numbers)
     columns = [
-        coating.brdf_eval(*angles.T),
-        coating.brdf_eval_directions(source, view),
-        coating.brdf_pdf(source, view),
+        material.brdf_eval(*angles.T),
+        material.brdf_eval_directions(source, view),
+        material.brdf_pdf(source, view),
         *drawn.T, density, weight,
     ]
     for row in zip(*columns):
@@ -36,31 +36,31 @@ for file in sorted(glob.glob('coating*.py')):
 /// Prints the values of points of parameters of their own.
 const EVALUATE_ALL: &str = "
 import numpy as np
-import coating
+import material
 
 psi, theta, phi, k2, kd, k1, n = np.loadtxt('points.txt').T
-coating.brdf_K2, coating.brdf_KD, coating.brdf_K1, coating.brdf_N_MINUS_1 = k2, kd, k1, n - 1.0
-for value in coating.brdf_eval(psi, theta, phi):
+material.brdf_K2, material.brdf_KD, material.brdf_K1, material.brdf_N_MINUS_1 = k2, kd, k1, n - 1.0
+for value in material.brdf_eval(psi, theta, phi):
     print(repr(float(value)))
 ";
 
-/// Evaluates numbers, and what is no direction or no angle.
+/// Evaluates numbers and arrays, also outside the domain.
 const EVALUATE_NUMBERS: &str = "
 import warnings
 import numpy as np
-import coating
+import material
 
 warnings.simplefilter('error')
-one = coating.brdf_eval(0.3, -0.4, 0.1)
+one = material.brdf_eval(0.3, -0.4, 0.1)
 assert one.shape == () and one > 0.0
-assert coating.brdf_eval([0.3, 0.2], -0.4, [[0.1], [0.2], [0.3]]).shape == (3, 2)
+assert material.brdf_eval([0.3, 0.2], -0.4, [[0.1], [0.2], [0.3]]).shape == (3, 2)
 up, below = [0.0, 0.0, 1.0], [0.6, 0.0, -0.8]
-assert coating.brdf_eval_directions(up, up) > 0.0 and coating.brdf_pdf(up, up) > 0.0
+assert material.brdf_eval_directions(up, up) > 0.0 and material.brdf_pdf(up, up) > 0.0
 for source, view in [(up, below), (below, up), (below, below)]:
-    assert coating.brdf_eval_directions(source, view) == 0.0 and coating.brdf_pdf(source, view) == 0.0
+    assert material.brdf_eval_directions(source, view) == 0.0 and material.brdf_pdf(source, view) == 0.0
 for angles in [(-0.1, 0.0, 0.0), (1.6, 0.0, 0.0), (0.0, -1.6, 0.0), (6.5, 0.0, 0.0)]:
-    assert np.isnan(coating.brdf_eval(*angles))
-view, pdf, weight = coating.brdf_sample(up, np.full((4, 5, 3), 0.5))
+    assert np.isnan(material.brdf_eval(*angles))
+view, pdf, weight = material.brdf_sample(up, np.full((4, 5, 3), 0.5))
 assert view.shape == (4, 5, 3) and pdf.shape == weight.shape == (4, 5)
 ";
 
@@ -106,12 +106,12 @@ fn the_values_of_every_family_are_those_of_the_model() {
         .collect();
     for (i, (brdf, points)) in all.iter().zip(&points).enumerate() {
         write(
-            format!("coating{i:02}.py"),
+            format!("material{i:02}.py"),
             source(brdf, Language::Python, "brdf"),
         )
         .expect("a file");
         write(
-            format!("coating{i:02}.txt"),
+            format!("material{i:02}.txt"),
             table(points.iter().map(Point::numbers)),
         )
         .expect("a file");
@@ -128,7 +128,7 @@ fn the_values_of_every_family_are_those_of_the_model() {
     }
 }
 
-fn one_coating(family: Family) -> tempfile::TempDir {
+fn one_material(family: Family) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let at = ModelParameters {
         k2: 0.3,
@@ -139,7 +139,7 @@ fn one_coating(family: Family) -> tempfile::TempDir {
     };
     let brdf = AnyBrdf::new(family, &at).expect("a brdf");
     let text = source(&brdf, Language::Python, "brdf");
-    fs::write(folder.path().join("coating.py"), text).expect("a file");
+    fs::write(folder.path().join("material.py"), text).expect("a file");
     folder
 }
 
@@ -148,7 +148,7 @@ fn the_reference_values_are_met() {
     let Some(python) = python("numpy") else {
         return;
     };
-    let (folder, points) = (one_coating(Family::Paper), reference());
+    let (folder, points) = (one_material(Family::Paper), reference());
     let rows = points
         .iter()
         .map(|p| p.angles.into_iter().chain(p.parameters).chain([p.n]));
@@ -165,11 +165,11 @@ fn the_reference_values_are_met() {
 }
 
 #[test]
-fn numbers_and_arrays_are_taken_and_what_is_outside_is_said() {
+fn numbers_and_arrays_are_accepted_and_the_domain_is_checked() {
     let Some(python) = python("numpy") else {
         return;
     };
     for family in Family::ALL {
-        run(&python, one_coating(family).path(), EVALUATE_NUMBERS);
+        run(&python, one_material(family).path(), EVALUATE_NUMBERS);
     }
 }

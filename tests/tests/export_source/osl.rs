@@ -10,7 +10,7 @@ use brdf_core::AnyBrdf;
 use brdf_fit::export::Language;
 use brdf_tests::python;
 
-use crate::coatings::{brdfs, source};
+use crate::materials::{brdfs, source};
 use crate::points::{Errors, Found, Point, check_single, points};
 
 /// The largest error: exp, log, sin and cos have fewer digits in that renderer, and are half of it at
@@ -20,7 +20,7 @@ const LIMIT: f64 = 2e-4;
 /// Points on one side of a picture, a pixel each.
 const SIDE: u16 = 16;
 
-/// What the three colours of the three pictures are. Those of a light are not negative.
+/// The three colours of each of the three pictures. Colours of a light are not negative.
 const PICTURES: [&str; 3] = [
     "brdf_eval_angles(p[0], p[1], p[2]), brdf_eval(source, view), brdf_pdf(source, view)",
     "2.0 + drawn[0], 2.0 + drawn[1], 2.0 + drawn[2]",
@@ -78,7 +78,7 @@ def compiled(file):
     with open(target) as text:
         return text.read()
 
-def material(code):
+def shade(code):
     tree = bpy.data.materials.new('picture')
     square.materials.clear()
     square.materials.append(tree)
@@ -97,7 +97,7 @@ for file in sorted(glob.glob('FOLDER/*.osl')):
     code = compiled(file)
     if 'picture' not in file:
         continue
-    material(code)
+    shade(code)
     scene.render.filepath = file.replace('.osl', '.exr')
     bpy.ops.render.render(write_still=True)
     image = bpy.data.images.load(scene.render.filepath)
@@ -142,7 +142,7 @@ fn found(pixels: [[f64; 3]; 3]) -> Found {
 }
 
 #[test]
-fn blender_compiles_and_runs_what_has_the_values_of_the_model() {
+fn blender_compiles_and_runs_shaders_with_the_values_of_the_model() {
     let Some(python) = python("bpy") else {
         return;
     };
@@ -188,7 +188,7 @@ fn blender_compiles_and_runs_what_has_the_values_of_the_model() {
     }
 }
 
-/// Three coatings in one shader.
+/// Three materials in one shader.
 fn three(all: &[AnyBrdf]) -> String {
     let mut text = String::new();
     for (name, brdf) in ["red", "green", "blue"].iter().zip(all) {
@@ -201,7 +201,7 @@ fn three(all: &[AnyBrdf]) -> String {
 }
 
 #[test]
-fn oslc_takes_one_coating_and_three() {
+fn oslc_takes_one_material_and_three() {
     let found = Command::new("oslc")
         .arg("--version")
         .stdout(Stdio::null())

@@ -1,4 +1,4 @@
-//! Directions at which exported sources are evaluated, and what they must give there.
+//! Points at which exported sources are evaluated, and the accuracy that is required there.
 
 use std::f64::consts::FRAC_1_PI;
 
@@ -83,7 +83,7 @@ fn direction(zenith: f64, azimuth: f64) -> [f64; 3] {
     [zenith.sin() * cos, zenith.sin() * sin, zenith.cos()]
 }
 
-/// What a source gives at a point.
+/// The results of a source at a point.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
     /// f_r of the angles.
@@ -183,9 +183,9 @@ fn drawn_errors(brdf: &AnyBrdf, sampler: &Sampler, point: &Point, found: &Found)
     [distance, weight.max(density)]
 }
 
-/// The error of a density over the density and 3 % of that of the cosine lobe: where the weight w_s
-/// of the other is nearly 1, what is left of 1 has fewer digits. Directions are drawn with the same
-/// w_s, so that no estimate suffers.
+/// The error of a density, relative to the density plus 3 % of that of the cosine lobe: where the weight
+/// w_s of the specular lobe is nearly 1, 1 - w_s has fewer digits. Directions are drawn with the same
+/// w_s, so that estimates are not affected.
 fn density_error(
     density: f64,
     sampler: &Sampler,

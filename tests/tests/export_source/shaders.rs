@@ -5,12 +5,12 @@ use brdf_core::AnyBrdf;
 use brdf_fit::export::Language;
 use naga::Module;
 
-use crate::coatings::{brdfs, source};
 use crate::interpreter::{Interpreter, Value};
+use crate::materials::{brdfs, source};
 use crate::points::{Errors, Found, Point, SINGLE, check_single, narrow, points};
 use crate::shader::{from_glsl, from_wgsl};
 
-/// A shader that calls what is for the user, without an output parameter.
+/// A shader that calls the functions for the user, without output parameters.
 const WGSL_MAIN: &str = "
 fn sampled(source: vec3<f32>, numbers: vec3<f32>) -> array<f32, 5> {
     let drawn = NAME_sample(source, numbers);
@@ -57,7 +57,7 @@ fn glsl(brdf: &AnyBrdf) -> Module {
     ))
 }
 
-/// What the functions of a shader give.
+/// The results of the functions of a shader.
 fn found(module: &Module, points: &[Point]) -> Vec<Found> {
     let mut shader = Interpreter::new(module);
     let at = |point: &Point| {
@@ -77,7 +77,7 @@ fn found(module: &Module, points: &[Point]) -> Vec<Found> {
 }
 
 #[test]
-fn naga_reads_and_translates_what_has_the_values_of_the_model() {
+fn naga_reads_and_translates_shaders_with_the_values_of_the_model() {
     for brdf in brdfs() {
         let k1 = brdf.parameters().k1;
         let points: Vec<_> = points(k1, 50).into_iter().map(Point::single).collect();
@@ -90,7 +90,7 @@ fn naga_reads_and_translates_what_has_the_values_of_the_model() {
 }
 
 #[test]
-fn below_the_surface_and_outside_the_domain_is_nothing() {
+fn f_r_is_0_below_the_surface_and_outside_the_domain() {
     for brdf in brdfs() {
         for module in [wgsl(&brdf), glsl(&brdf)] {
             let mut shader = Interpreter::new(&module);
@@ -117,7 +117,7 @@ fn below_the_surface_and_outside_the_domain_is_nothing() {
 }
 
 #[test]
-fn three_coatings_fit_into_one_shader() {
+fn three_materials_fit_into_one_shader() {
     let all = brdfs();
     let pieces = ["red", "green", "blue_2"].iter().zip(&all);
     let [glsl, wgsl] = [Language::Glsl, Language::Wgsl].map(|language| {

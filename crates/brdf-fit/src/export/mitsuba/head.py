@@ -1,9 +1,9 @@
 """
-A fitted coating for Mitsuba 3: a BSDF plugin, and a program that renders a scene with it.
+A fitted BRDF for Mitsuba 3: a BSDF plugin, and a program that renders a scene with it.
 
     python FILE [SCENE.xml] [PICTURE.png] [--spp N] [--size N] [--variant VARIANT]
 
-Without names it renders the scene beside it to a picture beside it. In programs of your own:
+By default it renders the scene FILE.xml to the picture FILE.png. In other programs:
 
     mitsuba.set_variant("llvm_ad_rgb")
     FILE.register()

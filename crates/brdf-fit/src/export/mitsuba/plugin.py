@@ -3,7 +3,7 @@ UP = (0, 0, 1)
 
 
 def parts(ctx):
-    """The components that are wanted: the facets, the Lambertian part."""
+    """Whether the glossy and the diffuse component are enabled."""
     return (
         ctx.is_enabled(mi.BSDFFlags.GlossyReflection, GLOSSY),
         ctx.is_enabled(mi.BSDFFlags.DiffuseReflection, DIFFUSE),
@@ -11,7 +11,7 @@ def parts(ctx):
 
 
 def above(wi, wo, active):
-    """Where both directions are above the surface, and directions that are, everywhere."""
+    """Where both directions are above the surface; elsewhere the directions are replaced by UP."""
     active = active & (wi.z > 0) & (wo.z > 0)
     up = mi.Vector3f(UP)
     return active, dr.select(active, wi, up), dr.select(active, wo, up)
@@ -19,9 +19,9 @@ def above(wi, wo, active):
 
 def spectrum(values, wavelengths):
     """
-    The values of red, green and blue in the colours of the variant. Mono is their luminance; over a
-    spectrum they stand at the dominant wavelengths of the sRGB primaries, and are interpolated
-    linearly between them and constant beyond.
+    The values of red, green and blue as a spectrum of the variant: in monochrome their luminance;
+    in spectral variants they apply at the dominant wavelengths of the sRGB primaries, with linear
+    interpolation between them and constant continuation.
     """
     red, green, blue = values
     if mi.is_rgb:
@@ -34,7 +34,7 @@ def spectrum(values, wavelengths):
 
 
 def brdf(lobe, ctx, wi, wo):
-    """f_r of the components that are wanted, in 1/sr."""
+    """f_r of the enabled components, in 1/sr."""
     glossy, diffuse = parts(ctx)
     if glossy and diffuse:
         return lobe.value(wi, wo)
@@ -52,12 +52,12 @@ def eval_cos(ctx, si, wo, active):
 
 
 def shares(lobe, ctx, wi):
-    """The probabilities that a direction is drawn from the facets, and from the cosine."""
+    """The probabilities of drawing from the glossy and from the diffuse component."""
     glossy, diffuse = parts(ctx)
     weight = lobe.specular_weight(wi.z)
     if glossy and diffuse:
         return weight, 1 - weight
-    # Where there are no facets to draw from, none is.
+    # Without a glossy component (weight 0) none is drawn from it.
     return dr.select(weight > 0, mi.Float(glossy), 0), mi.Float(diffuse)
 
 
@@ -73,14 +73,14 @@ def density(ctx, si, wo, active):
 
 def draw(ctx, wi, choice, uv):
     """
-    A direction for the one of wi, and whether it is from the facets. The whole part of
-    choice * len(LOBES) chooses the lobe, what is left of it between facets and cosine.
+    A direction for wi, and whether it is drawn from the glossy component. The integer part of
+    choice * len(LOBES) chooses the lobe, the fractional part the component.
     """
     wo, glossy = mi.Vector3f(UP), mi.Mask(False)
     for i, lobe in enumerate(LOBES):
         left = choice * len(LOBES) - i
         facets, cosine = shares(lobe, ctx, wi)
-        # The lobe chooses the facets where the number is below its weight, the cosine for 1.
+        # The lobe draws from the glossy component if the number is below its weight; 1 never is.
         from_facets = left < facets
         drawn = lobe.draw(wi, (dr.select(from_facets, 0.0, 1.0), uv.x, uv.y))
         wo = dr.select(left >= 0, mi.Vector3f(*drawn), wo)
@@ -89,7 +89,7 @@ def draw(ctx, wi, choice, uv):
 
 
 def register():
-    """Registers the material with the Mitsuba variant that is set, as a BSDF of the type NAME."""
+    """Registers the material as a BSDF of the type NAME, in the current variant of Mitsuba."""
     if mi.is_polarized:
         raise RuntimeError(f"{NAME}: the model has no polarisation: expected another variant")
 
@@ -135,7 +135,7 @@ def register():
 
 
 def choose_variant(variant):
-    """Sets a Mitsuba variant, where none is named the fastest that runs here."""
+    """Sets a variant of Mitsuba: by default llvm_ad_rgb, or scalar_rgb without LLVM."""
     if variant is None:
         variant = "llvm_ad_rgb" if dr.has_backend(dr.JitBackend.LLVM) else "scalar_rgb"
         if variant == "scalar_rgb":
@@ -145,13 +145,13 @@ def choose_variant(variant):
 
 def main():
     beside = Path(__file__)
-    parser = argparse.ArgumentParser(description="Renders a scene with the coating.")
+    parser = argparse.ArgumentParser(description="Renders a scene with the material.")
     add = parser.add_argument
-    add("scene", nargs="?", default=beside.with_suffix(".xml"), help="the one beside this file")
-    add("output", nargs="?", default=beside.with_suffix(".png"), help="a PNG beside this file")
-    add("--spp", type=int, default=0, help="rays a pixel instead of the scene's")
-    add("--size", type=int, help="pixels of a side, for scenes that leave it open ($size)")
-    add("--variant", help="of Mitsuba [llvm_ad_rgb, or scalar_rgb where there is no LLVM]")
+    add("scene", nargs="?", default=beside.with_suffix(".xml"), help="scene [FILE.xml]")
+    add("output", nargs="?", default=beside.with_suffix(".png"), help="picture [FILE.png]")
+    add("--spp", type=int, default=0, help="samples per pixel [those of the scene]")
+    add("--size", type=int, help="pixels per side, for scenes with the parameter $size")
+    add("--variant", help="variant of Mitsuba [llvm_ad_rgb, or scalar_rgb without LLVM]")
     arguments = parser.parse_args()
     choose_variant(arguments.variant)
     register()

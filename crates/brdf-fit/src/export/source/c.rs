@@ -19,8 +19,8 @@ NAME_pdf(source, view)                        density of the views that are samp
 NAME_sample(source, numbers, view, density)   view and its density from three numbers of [0, 1);
                                               returns f_r cos theta / density, 0 below the surface
 
-C99. Numbers are double, or float where BRDF_SINGLE is defined: f_r is right to 1e-5 then, for k1 from
-0.01 on and up to 85 deg.",
+C99. Numbers are double, or float where BRDF_SINGLE is defined: the relative error of f_r is then at
+most 1e-5 for k1 of at least 0.01 and angles up to 85 deg.",
     opening: "
 #ifndef NAME_INCLUDED
 #define NAME_INCLUDED

@@ -37,8 +37,8 @@ pub(super) struct Parts {
 
 /// The comment above the function `specular_weight`.
 const SPECULAR_WEIGHT: &str = "\
-w_s, the part of the views that the facets mirror, between its values at cos psi = (i/16)^2. What it
-is changes the variance of an estimate, and nothing else.";
+w_s, the probability of the specular lobe, interpolated between its values at cos psi = (i/16)^2. It
+affects the variance of an estimate, not its mean.";
 
 impl<'a> Source<'a> {
     /// A fit with the prefix of all names.
@@ -147,7 +147,7 @@ fn constants<D: Dialect>(dialect: &D, brdf: &AnyBrdf) -> String {
     );
     add("Width of the facet distribution.", "K1", at.k1);
     let index = format!(
-        "Refractive index n = {:?}, less 1: that keeps its digits.",
+        "Refractive index n = {:?}, minus 1 to keep its precision.",
         at.n
     );
     add(&index, "N_MINUS_1", at.n - 1.0);

@@ -18,8 +18,8 @@ NAME_pdf(source, view)                        density of the views that are samp
 NAME_sample(source, numbers, view, density)   view and its density from three numbers of [0, 1);
                                               returns f_r cos theta / density, 0 below the surface
 
-GLSL, of version 1.30, 3.00 es or later. Next to grazing angles directions are more accurate than
-angles, whose cosine a graphics processor may not have to all digits.",
+GLSL, version 1.30, 3.00 es or later. Near grazing, directions are more accurate than angles,
+because a graphics processor may compute the cosine of an angle with fewer digits.",
     opening: "\n",
     constants: "\
 const float NAME_OUTSIDE = 0.0;

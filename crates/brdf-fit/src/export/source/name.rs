@@ -3,8 +3,8 @@
 /// A word cannot be the prefix of the names in source code.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "\"{0}\" is no name in source code: expected letters a-z, digits and single underscores between \
-     them, the first a letter, not gl or gl_..."
+    "\"{0}\" is not a name in source code: expected letters a-z, digits and single underscores \
+     between them, beginning with a letter and not gl or gl_..."
 )]
 pub struct NameError(String);
 

@@ -18,10 +18,10 @@ NAME_pdf(source, view)                        density of the views that are samp
 NAME_sample(source, numbers, view, density)   view and its density from three numbers of [0, 1);
                                               returns f_r cos theta / density, 0 below the surface
 
-Shaders of this language put materials together of closures that the renderer has; they cannot
-define one. These functions serve shaders that compute light themselves, patterns and the baking of
-tables; the shader NAME_value gives f_r of two directions about a normal. A file has room for one
-shader: another includes this one with NAME_NO_SHADER defined.",
+Shaders of this language compose materials of closures of the renderer; they cannot define closures.
+These functions are for shaders that compute illumination themselves, for patterns and for baking
+tables; the shader NAME_value returns f_r for two directions and a normal. A file may contain one
+shader only: to include this file in another shader, define NAME_NO_SHADER.",
     opening: "\n",
     constants: "\
 #define NAME_OUTSIDE 0.0
@@ -46,14 +46,14 @@ float NAME_sample(vector source, vector numbers, output vector view, output floa
 }
 
 #ifndef NAME_NO_SHADER
-// A direction about a normal, its length being 1: z along the normal, x across any other direction.
+// A unit vector in the frame of a normal: z along the normal, x in any direction across it.
 vector NAME_about(vector direction, normal n) {
     vector across = abs(n[2]) < 0.5 ? vector(0.0, 0.0, 1.0) : vector(1.0, 0.0, 0.0);
     vector x = normalize(cross(across, n));
     return normalize(vector(dot(direction, x), dot(direction, cross(n, x)), dot(direction, n)));
 }
 
-// f_r in 1/sr of the directions towards the source and towards the viewer.
+// f_r in 1/sr for the directions to the source and to the viewer.
 shader NAME_value(
     vector Source = vector(0.0, 0.0, 1.0),
     vector View = vector(0.0, 0.0, 1.0),

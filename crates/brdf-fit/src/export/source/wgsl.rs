@@ -18,8 +18,8 @@ NAME_pdf(source, view)              density of the views that are sampled, in 1/
 NAME_sample(source, numbers)        view, its density and f_r cos theta / density, which is 0 below
                                     the surface, from three numbers of [0, 1)
 
-Next to grazing angles directions are more accurate than angles, whose cosine a graphics processor
-may not have to all digits.",
+Near grazing, directions are more accurate than angles, because a graphics processor may compute the
+cosine of an angle with fewer digits.",
     opening: "\n",
     constants: "\
 const NAME_OUTSIDE: f32 = 0.0;

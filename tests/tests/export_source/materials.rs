@@ -1,10 +1,10 @@
-//! Coatings to export.
+//! Materials for the tests.
 
 use brdf_core::{AnyBrdf, Family, ModelParameters};
 use brdf_fit::export::{ExportOptions, Fitted, Language, Material, Target, export};
 
-/// Numbers that the exported sources must get right for each family: usual ones, and those at which
-/// a form of the formulas has its limit.
+/// BRDFs of each family that the exported sources must reproduce: usual parameters, and those at which
+/// an expression of the formulas takes its limit.
 pub(crate) fn brdfs() -> Vec<AnyBrdf> {
     let usual = [(0.3, 0.1, 0.2, 1.5, 1.7), (1.211, 0.521, 0.071, 1.6, 0.4)];
     let limits = [
@@ -31,12 +31,12 @@ pub(crate) fn source(brdf: &AnyBrdf, language: Language, name: &str) -> String {
         e_percent: 1.25,
         psi_max_deg: 70.0,
     };
-    let coating = Material { fits: vec![fitted] };
+    let material = Material { fits: vec![fitted] };
     let options = ExportOptions {
         name: name.to_owned(),
         ..ExportOptions::default()
     };
     let mut bytes = Vec::new();
-    export(&coating, Target::Source(language), &options, &mut bytes).expect("a source");
+    export(&material, Target::Source(language), &options, &mut bytes).expect("a source");
     String::from_utf8(bytes).expect("text")
 }

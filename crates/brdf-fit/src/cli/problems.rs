@@ -41,7 +41,7 @@ pub(super) struct Problems {
 
 impl Problems {
     /// Adds a message that is printed as it is.
-    pub(super) fn add(&mut self, message: impl ToString, outcome: Outcome) {
+    pub(super) fn add(&mut self, message: &impl ToString, outcome: Outcome) {
         self.problems.push(Problem::Single(message.to_string()));
         self.outcome = self.outcome.max(Some(outcome));
     }
@@ -52,7 +52,7 @@ impl Problems {
             .model
             .map_or_else(String::new, |model| format!(", {model}"));
         let scan = self::place(&place.file, place.wavelength_um);
-        self.add(format!("{scan}{model}: {message}"), Outcome::Incomplete);
+        self.add(&format!("{scan}{model}: {message}"), Outcome::Incomplete);
     }
 
     /// Adds an error in the options that a fit met.
@@ -134,7 +134,7 @@ mod tests {
     fn an_error_in_the_options_is_listed_once_with_all_its_places() {
         let mut problems = Problems::default();
         problems.add_usage(at("a.csv", Some(0.5), None), "no index".to_owned());
-        problems.add("b.csv: cannot be read", Outcome::Failed);
+        problems.add(&"b.csv: cannot be read", Outcome::Failed);
         problems.add_usage(at("a.csv", Some(0.6), None), "no index".to_owned());
         problems.add_usage(at("c.csv", None, None), "no index".to_owned());
         let texts: Vec<String> = problems.problems.iter().map(Problem::text).collect();

@@ -114,7 +114,7 @@ fn listed(places: &[Place]) -> String {
     if models.is_empty() || models.len() == Model::WITH_REFERENCES.len() {
         files
     } else {
-        format!("{files}; {}", models.join(", "))
+        format!("{files} (fitting {})", models.join(", "))
     }
 }
 
@@ -151,6 +151,6 @@ mod tests {
     fn models_are_listed_unless_all_are_concerned() {
         let all = Model::WITH_REFERENCES.map(|model| at("a.csv", None, Some(model)));
         assert_eq!(listed(&all), "a.csv");
-        assert_eq!(listed(&all[..2]), "a.csv; three, three+n");
+        assert_eq!(listed(&all[..2]), "a.csv (fitting three, three+n)");
     }
 }

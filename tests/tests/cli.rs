@@ -374,8 +374,8 @@ fn the_limit_of_the_energy_constraint_follows_with_or_without_an_equals_sign() {
         let output = run_fit(arguments);
         succeeded(&output);
         let document: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let limit = &document["reports"][0]["fit"]["options"]["energy_limit"];
-        limit.as_f64().unwrap().to_degrees().round()
+        let limit = &document["reports"][0]["fit"]["options"]["energy_limit_deg"];
+        limit.as_f64().unwrap().round()
     };
     let option = "--energy-conserving";
     for (words, expected) in [

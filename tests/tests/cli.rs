@@ -374,8 +374,8 @@ fn the_limit_of_the_energy_constraint_follows_with_or_without_an_equals_sign() {
         let output = run_fit(arguments);
         succeeded(&output);
         let document: Value = serde_json::from_slice(&output.stdout).unwrap();
-        let limit = &document["reports"][0]["fit"]["options"]["energy_limit"];
-        limit.as_f64().unwrap().to_degrees().round()
+        let limit = &document["reports"][0]["fit"]["options"]["energy_limit_deg"];
+        limit.as_f64().unwrap().round()
     };
     let option = "--energy-conserving";
     for (words, expected) in [
@@ -405,9 +405,9 @@ fn a_scan_whose_name_is_a_number_is_no_limit() {
 }
 
 /// The tables without the lines that contain times.
-fn without_stages(text: &str) -> String {
-    let lines = text.lines().filter(|line| !line.starts_with("  stage "));
-    lines.map(|line| format!("{line}\n")).collect()
+fn without_stages(text: &str) -> Vec<&str> {
+    let lines = text.lines();
+    lines.filter(|line| !line.starts_with("  stage ")).collect()
 }
 
 #[test]
@@ -429,8 +429,8 @@ fn the_subcommand_is_the_program() {
         let (of_brdf, of_fit) = run(&arguments);
         assert_eq!(of_brdf.status, of_fit.status);
         assert_eq!(of_brdf.stderr, of_fit.stderr);
-        let [of_brdf, of_fit] = [of_brdf, of_fit].map(|output| without_stages(&stdout(&output)));
-        assert_eq!(of_brdf, of_fit);
+        let [of_brdf, of_fit] = [of_brdf, of_fit].map(|output| stdout(&output));
+        assert_eq!(without_stages(&of_brdf), without_stages(&of_fit));
         assert!(arguments.len() < 3 || arguments[2] != "1.5" || of_fit.len() > 100);
     }
     let (of_brdf, of_fit) = run(&["--help"]);

@@ -41,7 +41,7 @@ pub(super) struct Problems {
 
 impl Problems {
     /// Adds a message that is printed as it is.
-    pub(super) fn add(&mut self, message: impl ToString, outcome: Outcome) {
+    pub(super) fn add(&mut self, message: &impl ToString, outcome: Outcome) {
         self.problems.push(Problem::Single(message.to_string()));
         self.outcome = self.outcome.max(Some(outcome));
     }
@@ -52,7 +52,7 @@ impl Problems {
             .model
             .map_or_else(String::new, |model| format!(", {model}"));
         let scan = self::place(&place.file, place.wavelength_um);
-        self.add(format!("{scan}{model}: {message}"), Outcome::Incomplete);
+        self.add(&format!("{scan}{model}: {message}"), Outcome::Incomplete);
     }
 
     /// Adds an error in the options that a fit met.
@@ -114,7 +114,7 @@ fn listed(places: &[Place]) -> String {
     if models.is_empty() || models.len() == Model::WITH_REFERENCES.len() {
         files
     } else {
-        format!("{files}; {}", models.join(", "))
+        format!("{files} (fitting {})", models.join(", "))
     }
 }
 
@@ -134,7 +134,7 @@ mod tests {
     fn an_error_in_the_options_is_listed_once_with_all_its_places() {
         let mut problems = Problems::default();
         problems.add_usage(at("a.csv", Some(0.5), None), "no index".to_owned());
-        problems.add("b.csv: cannot be read", Outcome::Failed);
+        problems.add(&"b.csv: cannot be read", Outcome::Failed);
         problems.add_usage(at("a.csv", Some(0.6), None), "no index".to_owned());
         problems.add_usage(at("c.csv", None, None), "no index".to_owned());
         let texts: Vec<String> = problems.problems.iter().map(Problem::text).collect();
@@ -151,6 +151,6 @@ mod tests {
     fn models_are_listed_unless_all_are_concerned() {
         let all = Model::WITH_REFERENCES.map(|model| at("a.csv", None, Some(model)));
         assert_eq!(listed(&all), "a.csv");
-        assert_eq!(listed(&all[..2]), "a.csv; three, three+n");
+        assert_eq!(listed(&all[..2]), "a.csv (fitting three, three+n)");
     }
 }

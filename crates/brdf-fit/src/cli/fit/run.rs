@@ -39,7 +39,7 @@ pub(in crate::cli) fn run(arguments: &Arguments) -> Outcome {
                 scans.push(*scan);
                 reports.push(report);
             }
-            Err(error) => problems.add(Failure::from(error), Outcome::Failed),
+            Err(error) => problems.add(&Failure::from(error), Outcome::Failed),
         }
     }
     let fitted = problems.print();
@@ -75,7 +75,7 @@ fn read_all(
     for file in files {
         match file {
             Ok(of_file) => scans.extend(of_file),
-            Err(error) => problems.add(Failure::from(error), Outcome::Failed),
+            Err(error) => problems.add(&Failure::from(error), Outcome::Failed),
         }
     }
     scans

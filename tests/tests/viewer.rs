@@ -8,10 +8,11 @@ use brdf_fit::fit::Fit;
 use brdf_fit::report::{Document, Report};
 use brdf_tests::{fit_command, in_workspace, viewer_command};
 use brdf_viewer::Viewer;
-use brdf_viewer::dialogs::Native;
-use brdf_viewer::intent::{Export, Intent};
-use brdf_viewer::screenshot::Unseen;
-use brdf_viewer::state::fitting::{Scope, Stages};
+use brdf_viewer::dialogs::NativeDialogs;
+use brdf_viewer::intent::Intent;
+use brdf_viewer::output_kind::OutputKind;
+use brdf_viewer::screenshot::OffscreenWindow;
+use brdf_viewer::state::fit_settings::{Scope, Stages};
 use brdf_viewer::state::saved::Settings;
 
 fn viewer(arguments: &[&str]) -> Output {
@@ -60,15 +61,19 @@ fn the_viewer_fits_as_the_command_line_does_to_the_last_digit() {
         .unwrap();
     assert!(output.status.success());
 
-    let mut window = Unseen::new([900.0, 600.0], 1.0);
-    let mut viewer = Viewer::new(window.context(), Box::new(Native), Settings::unkept());
+    let mut window = OffscreenWindow::new([900.0, 600.0], 1.0);
+    let mut viewer = Viewer::new(
+        window.context(),
+        Box::new(NativeDialogs),
+        Settings::in_memory(),
+    );
     viewer.state.apply(Intent::Open(vec![scan]));
     window.picture(&mut viewer).unwrap();
     viewer.state.apply(Intent::Fit(Stages::Both, Scope::All));
     window.picture(&mut viewer).unwrap();
     viewer
         .state
-        .apply(Intent::Write(Export::Fit, by_viewer.clone()));
+        .apply(Intent::Write(OutputKind::Fit, by_viewer.clone()));
     while !by_viewer.exists() {
         window.picture(&mut viewer).unwrap();
     }

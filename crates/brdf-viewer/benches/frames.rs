@@ -1,4 +1,4 @@
-//! The time of a frame: our own work, without the graphics card.
+//! The time of a frame on the CPU, without the graphics card.
 //!
 //! `cargo bench -p brdf-viewer --bench frames`
 
@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 
 use brdf_fit::model::Model;
 use brdf_viewer::Viewer;
-use brdf_viewer::dialogs::Native;
+use brdf_viewer::dialogs::NativeDialogs;
 use brdf_viewer::intent::{Command, Intent};
-use brdf_viewer::screenshot::Unseen;
-use brdf_viewer::state::fitting::{Scope, Stages};
+use brdf_viewer::screenshot::OffscreenWindow;
+use brdf_viewer::state::fit_settings::{Scope, Stages};
 use brdf_viewer::state::saved::Settings;
 use criterion::{Criterion, criterion_group, criterion_main};
 
@@ -31,10 +31,14 @@ fn large() -> String {
     text
 }
 
-/// A window with a sample in it.
-fn window(sample: Intent) -> (Unseen, Viewer) {
-    let mut window = Unseen::new([1280.0, 800.0], 1.0);
-    let mut viewer = Viewer::new(window.context(), Box::new(Native), Settings::unkept());
+/// A window with a sample.
+fn window(sample: Intent) -> (OffscreenWindow, Viewer) {
+    let mut window = OffscreenWindow::new([1280.0, 800.0], 1.0);
+    let mut viewer = Viewer::new(
+        window.context(),
+        Box::new(NativeDialogs),
+        Settings::in_memory(),
+    );
     viewer.state.apply(sample);
     let mut longest = Duration::ZERO;
     loop {
@@ -46,7 +50,7 @@ fn window(sample: Intent) -> (Unseen, Viewer) {
         }
         std::thread::sleep(Duration::from_millis(1));
     }
-    println!("longest frame while it is opened: {longest:.1?}");
+    println!("longest frame while the sample is opened: {longest:.1?}");
     (window, viewer)
 }
 
@@ -73,13 +77,13 @@ fn frames(criterion: &mut Criterion) {
             group.bench_function(format!("{name}, {what}"), |bench| {
                 bench.iter(|| {
                     if drag {
-                        turn(viewer);
+                        drag_k1(viewer);
                     }
                     black_box(window.frame_and_triangles(viewer))
                 });
             });
         };
-        let command = |viewer: &mut Viewer, command| viewer.state.apply(Intent::Do(command));
+        let command = |viewer: &mut Viewer, command| viewer.state.apply(Intent::Command(command));
         time(&mut viewer, "nothing changes", false);
         time(&mut viewer, "k1 of three dragged", true);
         command(&mut viewer, Command::Residuals);
@@ -98,18 +102,23 @@ fn frames(criterion: &mut Criterion) {
     }
 }
 
-/// Turns k1 by a little, over and over again.
-fn turn(viewer: &mut Viewer) {
-    let mut knobs = viewer.state.active_sample().expect("a sample").scan().knobs;
-    knobs.at.k1 = if knobs.at.k1 > 0.3 {
+/// Changes k1 a little in each frame.
+fn drag_k1(viewer: &mut Viewer) {
+    let mut parameters = viewer
+        .state
+        .active_sample()
+        .expect("a sample")
+        .scan()
+        .parameters;
+    parameters.values.k1 = if parameters.values.k1 > 0.3 {
         0.2
     } else {
-        1.001 * knobs.at.k1
+        1.001 * parameters.values.k1
     };
-    viewer.state.apply(Intent::Turn(knobs));
+    viewer.state.apply(Intent::SetParameters(parameters));
 }
 
-/// Frames while everything under ../shared/data is fitted: said, not judged.
+/// Prints the times of frames while all scans in ../shared/data are fitted.
 fn while_fitting(_: &mut Criterion) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
     let files: Vec<PathBuf> = folder
@@ -136,10 +145,10 @@ fn while_fitting(_: &mut Criterion) {
         std::thread::sleep(Duration::from_millis(1));
     }
     frames.sort();
-    let run = viewer.state.run.as_ref().expect("a run");
+    let run = viewer.state.fit_run.as_ref().expect("a run");
     println!(
         "frames while {} scans of {} samples are fitted in {:.1} s: {} frames, median {:.1?}, 99 % below {:.1?}, longest {:.1?}",
-        run.jobs(),
+        run.fit_count(),
         viewer.state.samples.len(),
         started.elapsed().as_secs_f64(),
         frames.len(),

@@ -1,4 +1,4 @@
-//! One frame after the other: events in, intents applied, panels drawn, jobs out.
+//! The application: each frame takes events, applies intents, draws panels and starts jobs.
 
 use std::path::PathBuf;
 
@@ -16,33 +16,33 @@ use crate::worker::Worker;
 
 /// The application.
 pub struct Viewer {
-    /// What is loaded, chosen and fitted.
+    /// The samples, the settings and the fits.
     pub state: State,
     worker: Worker,
     dialogs: Box<dyn Dialogs>,
     settings: Settings,
-    when_read: Vec<Intent>,
+    when_opened: Vec<Intent>,
 }
 
 impl Viewer {
-    /// A window with what was kept of the last one.
+    /// A viewer with the settings of the last session.
     pub fn new(ctx: &egui::Context, dialogs: Box<dyn Dialogs>, settings: Settings) -> Self {
         let mut state = State::new(&settings.saved);
         if let Some(note) = &settings.note {
-            state.note(note.clone());
+            state.report_note(note.clone());
         }
-        let woken = ctx.clone();
+        let ctx = ctx.clone();
         Self {
             state,
-            worker: Worker::new(move || woken.request_repaint()),
+            worker: Worker::new(move || ctx.request_repaint()),
             dialogs,
             settings,
-            when_read: Vec::new(),
+            when_opened: Vec::new(),
         }
     }
 
-    /// Opens files; where there are none, what was open the last time, or the first of the built-in
-    /// samples.
+    /// Opens files. Without files, opens those of the last session, or else the first built-in
+    /// sample.
     pub fn open_at_start(&mut self, files: Vec<PathBuf>) {
         if !files.is_empty() {
             self.state.apply(Intent::Open(files));
@@ -55,73 +55,104 @@ impl Viewer {
         }
     }
 
-    /// What shall be done when all files that are being opened have been read.
-    pub fn when_read(&mut self, intents: Vec<Intent>) {
-        self.when_read = intents;
+    /// Applies intents once all files that are being read are open.
+    pub fn when_opened(&mut self, intents: Vec<Intent>) {
+        self.when_opened = intents;
     }
 
-    /// Whether anything is still to be done.
+    /// Whether jobs are running or intents are pending.
     pub fn is_busy(&self) -> bool {
-        self.state.is_busy() || !self.when_read.is_empty()
+        self.state.is_busy() || !self.when_opened.is_empty()
     }
 
-    /// Draws a frame.
+    /// Runs and draws a frame.
     pub fn frame(&mut self, ui: &mut egui::Ui) {
-        for event in self.worker.take_events() {
-            self.state.take(event);
-        }
-        if self.state.reading == 0 {
-            let mut intents = std::mem::take(&mut self.when_read);
-            self.apply(&mut intents);
-        }
         let ctx = ui.ctx().clone();
+        self.take_events();
         self.state.system_dark = theme::system_is_dark(&ctx);
         theme::set(&ctx, self.state.interface.dark);
-        let mut intents = panels::drop::intents(&ctx);
-        if self.state.dialog.is_none() {
-            let pressed = shortcuts::pressed(&ctx).into_iter();
-            intents.extend(pressed.map(Intent::Do));
+        self.apply(self.keys_and_drops(&ctx));
+        self.show_panels(ui);
+        if !ctx.input(|input| input.pointer.any_down()) {
+            self.state.commit();
         }
-        self.apply(&mut intents);
+        self.carry_out_effects(&ctx);
+        self.save_settings(&ctx);
+    }
 
+    fn take_events(&mut self) {
+        for event in self.worker.take_events() {
+            self.state.take_event(event);
+        }
+        if self.state.files_being_read == 0 {
+            let intents = std::mem::take(&mut self.when_opened);
+            self.apply(intents);
+        }
+    }
+
+    fn keys_and_drops(&self, ctx: &egui::Context) -> Vec<Intent> {
+        let mut intents = panels::drop::intents(ctx);
+        if self.state.dialog.is_none() {
+            let pressed = shortcuts::pressed(ctx).into_iter();
+            intents.extend(pressed.map(Intent::Command));
+        }
+        intents
+    }
+
+    fn show_panels(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        let mut intents = Vec::new();
         panels::menu::show(ui, &self.state, &mut intents);
         panels::status::show(ui, &self.state, &mut intents);
-        self.apply(&mut intents);
+        self.apply(std::mem::take(&mut intents));
         if self.state.interface.results {
             panels::results::show(ui, &self.state, &mut intents);
         }
         if self.state.interface.parameters {
-            let turned = panels::parameters::show(ui, &mut self.state);
-            // The results are drawn already, for the parameters before: they are drawn once more.
-            if turned && self.state.interface.results && self.state.interface.tab.follows() {
-                ctx.request_discard("parameters were turned");
-            }
+            self.show_parameters(ui);
         }
-        // From here on everything follows from what has just been turned.
+        // The following panels show values derived from the parameters of this frame.
         self.state.refresh();
         if self.state.interface.samples {
             panels::samples::show(ui, &self.state, &mut intents);
         }
         panels::messages::show(ui, &self.state, &mut intents);
-        plot::show(ui, &mut self.state, &mut intents);
+        plot::show(ui, &self.state, &mut intents);
         panels::dialog::show(&ctx, &self.state, self.dialogs.available(), &mut intents);
-        self.apply(&mut intents);
-        if !ctx.input(|input| input.pointer.any_down()) {
-            self.state.settle();
-        }
-        self.carry_out(&ctx);
-        self.keep(&ctx);
+        self.apply(intents);
     }
 
-    fn apply(&mut self, intents: &mut Vec<Intent>) {
-        for intent in intents.drain(..) {
+    /// Draws the panel of the parameters. Changed parameters are applied before the values derived
+    /// from them are drawn below, so that both belong to the same frame.
+    fn show_parameters(&mut self, ui: &mut egui::Ui) {
+        let mut changed = false;
+        panels::parameters::show_panel(ui, |ui| {
+            let mut intents = Vec::new();
+            panels::parameters::show(ui, &self.state, &mut intents);
+            changed = !intents.is_empty();
+            self.apply(std::mem::take(&mut intents));
+            self.state.refresh();
+            panels::parameters::show_outcome(ui, &self.state);
+            ui.separator();
+            panels::fit::show(ui, &self.state, &mut intents);
+            self.apply(intents);
+        });
+        // The results were drawn before, from the old parameters: the frame is drawn again.
+        let interface = &self.state.interface;
+        if changed && interface.results && interface.tab.shows_current_parameters() {
+            ui.ctx().request_discard("parameters have changed");
+        }
+    }
+
+    fn apply(&mut self, intents: Vec<Intent>) {
+        for intent in intents {
             self.state.apply(intent);
         }
     }
 
-    fn carry_out(&mut self, ctx: &egui::Context) {
+    fn carry_out_effects(&mut self, ctx: &egui::Context) {
         let effects = self.state.take_effects();
-        // What was changed is to be seen at once, also where no event follows.
+        // The changes must become visible even if no event follows.
         if !effects.is_empty() {
             ctx.request_repaint();
         }
@@ -133,17 +164,17 @@ impl Viewer {
                     self.dialogs.open(self.worker.events());
                 }
                 Effect::AskOpen => self.state.ask_path(),
-                Effect::AskExport(what, path) if self.dialogs.available() => {
-                    self.dialogs.export(what, &path, self.worker.events());
+                Effect::AskExport(kind, path) if self.dialogs.available() => {
+                    self.dialogs.export(kind, &path, self.worker.events());
                 }
-                Effect::AskExport(what, path) => self.state.ask_export(what, &path),
+                Effect::AskExport(kind, path) => self.state.ask_export(kind, &path),
                 Effect::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             }
         }
     }
 
-    /// Keeps the settings when they have changed and nothing is being dragged.
-    fn keep(&mut self, ctx: &egui::Context) {
+    /// Saves the settings if they have changed and nothing is being dragged or read.
+    fn save_settings(&mut self, ctx: &egui::Context) {
         let Some(path) = &self.settings.path else {
             return;
         };
@@ -152,18 +183,18 @@ impl Viewer {
             size.x.max(SMALLEST_WINDOW[0]),
             size.y.max(SMALLEST_WINDOW[1]),
         ];
-        let now = self.state.saved(window);
+        let current = self.state.saved(window);
         let dragging = ctx.input(|input| input.pointer.any_down());
-        if dragging || self.state.reading > 0 || now == self.settings.saved {
+        if dragging || self.state.files_being_read > 0 || current == self.settings.saved {
             return;
         }
-        if let Err(error) = now.write(path) {
+        if let Err(error) = current.write(path) {
             self.state
-                .note(format!("the settings are not kept: {error}"));
-            // Said once.
+                .report_note(format!("the settings cannot be saved: {error}"));
+            // Without a path there is no second attempt, and no second message.
             self.settings.path = None;
         }
-        self.settings.saved = now;
+        self.settings.saved = current;
     }
 }
 

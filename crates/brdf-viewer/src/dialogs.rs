@@ -1,70 +1,70 @@
-//! The system's dialogs for files, on threads of their own: they may stay open for hours.
+//! The file dialogs of the system. Each runs on its own thread, because it may stay open for long.
 
 use std::path::{Path, PathBuf};
 use std::thread;
 
 use brdf_fit::scan::Format;
 
-use crate::intent::Export;
 use crate::job::Event;
-use crate::worker::Events;
+use crate::output_kind::OutputKind;
+use crate::worker::EventSender;
 
-/// Dialogs for files. In the tests there are none, or ones that answer by themselves.
+/// File dialogs. Tests replace them by none, or by ones that answer immediately.
 pub trait Dialogs {
-    /// Whether there are any.
+    /// Whether file dialogs are available.
     fn available(&self) -> bool;
-    /// Asks for files to open.
-    fn open(&self, events: Events);
-    /// Asks where to write.
-    fn export(&self, what: Export, suggested: &Path, events: Events);
+    /// Asks for files to open, and answers with [`Event::FilesChosen`].
+    fn open(&self, events: EventSender);
+    /// Asks for the path of a file to write, and answers with [`Event::OutputChosen`].
+    fn export(&self, kind: OutputKind, suggested: &Path, events: EventSender);
 }
 
-/// Those of the system.
+/// The file dialogs of the system.
 #[derive(Debug, Default)]
-pub struct Native;
+pub struct NativeDialogs;
 
-impl Dialogs for Native {
+impl Dialogs for NativeDialogs {
     fn available(&self) -> bool {
         !cfg!(target_os = "linux") || has_portal() || has_zenity()
     }
 
-    fn open(&self, events: Events) {
+    fn open(&self, events: EventSender) {
         thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
                 .set_title("Open scans or fits")
                 .add_filter("Scans and fits", &extensions())
                 .add_filter("All files", &["*"]);
-            // No answer is a dialog that was closed.
+            // `None` means that the dialog was cancelled.
             if let Some(paths) = dialog.pick_files() {
-                events.send(Event::Chosen(paths));
+                events.send(Event::FilesChosen(paths));
             }
         });
     }
 
-    fn export(&self, what: Export, suggested: &Path, events: Events) {
+    fn export(&self, kind: OutputKind, suggested: &Path, events: EventSender) {
         let name = suggested
             .file_name()
             .map(|name| name.to_string_lossy().into_owned());
         thread::spawn(move || {
             let dialog = rfd::FileDialog::new()
-                .set_title(format!("Write {}", what.name()))
+                .set_title(format!("Save {}", kind.name()))
                 .set_file_name(name.unwrap_or_default())
-                .add_filter(what.name(), &[what.extension()]);
+                .add_filter(kind.name(), &[kind.extension()]);
             if let Some(path) = dialog.save_file() {
-                events.send(Event::ChosenExport(what, path));
+                events.send(Event::OutputChosen(kind, path));
             }
         });
     }
 }
 
-/// Those of scans in any format, of text without one of its own, and of fits.
+/// The extensions of all scan formats, of plain text, and of fits.
 fn extensions() -> Vec<&'static str> {
     let formats = Format::NAMED.into_iter();
     let of_formats = formats.flat_map(|(format, _)| format.extensions().iter().copied());
     of_formats.chain(["txt", "dat", "json"]).collect()
 }
 
-/// Whether there is a session bus, on which a desktop offers its dialogs.
+/// Whether there is a session bus, through which desktops provide their dialogs.
 fn has_portal() -> bool {
     let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()

@@ -1,4 +1,4 @@
-//! What a panel, a key or a dropped file asks for.
+//! The requests of the user: what a panel, a key or a dropped file asks for.
 
 use std::path::PathBuf;
 
@@ -6,18 +6,20 @@ use brdf_fit::model::{Model, Parameter};
 use brdf_fit::plot::View;
 use brdf_fit::scan::Convention;
 
-use crate::state::fitting::{FitChoice, Scope, Stages};
+use crate::output_kind::OutputKind;
+use crate::state::fit_settings::{FitSettings, Scope, Stages};
+use crate::state::id::SampleId;
 use crate::state::interface::ResultTab;
-use crate::state::sample::{Knobs, SampleId};
+use crate::state::parameters::EditedParameters;
 
-/// A wish of the user. [`State::apply`](crate::state::State::apply) carries it out.
+/// A request of the user, which `State::apply` carries out.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Intent {
-    /// One of the commands that need no more to be said.
-    Do(Command),
+    /// Carry out a command, which has no arguments.
+    Command(Command),
     /// Open files: scans, or fits as JSON.
     Open(Vec<PathBuf>),
-    /// Open a file that is already here: its name and its bytes.
+    /// Open the content of a file: its name and its bytes.
     OpenBytes(String, Vec<u8>),
     /// Open an entry of the built-in menu.
     OpenBuiltIn(usize),
@@ -25,87 +27,47 @@ pub enum Intent {
     Close(SampleId),
     /// Show or hide a sample.
     ShowSample(SampleId, bool),
-    /// Turn the parameters of this sample from now on.
+    /// Make a sample the active one, whose parameters are edited.
     Activate(SampleId),
-    /// Show another wavelength of a sample.
+    /// Show another wavelength of a sample, by its index.
     Wavelength(SampleId, usize),
-    /// Show or hide one incidence of a sample.
+    /// Show or hide one incidence of a sample, by its index.
     ShowIncidence(SampleId, usize, bool),
-    /// Show all incidences of a sample, or none.
+    /// Show or hide all incidences of a sample.
     ShowAllIncidences(SampleId, bool),
-    /// Read files in another angular convention from now on.
+    /// Set the angular convention in which files are read from now on.
     Convention(Convention),
-    /// Look at the data in another way.
+    /// Change the view of the data.
     View(View),
-    /// Other parameters of the active sample.
-    Turn(Knobs),
-    /// Another model of some scans.
+    /// Set the number of columns of readings that fit into the plot.
+    PlotColumns(usize),
+    /// Set the parameters of the active scan.
+    SetParameters(EditedParameters),
+    /// Set the model of the scans within a scope.
     Model(Model, Scope),
-    /// A parameter back to its fitted value.
+    /// Reset a parameter to its fitted value.
     Reset(Parameter),
-    /// Other settings of the fit.
-    FitChoice(FitChoice),
-    /// Fit.
+    /// Change the fit settings.
+    FitSettings(FitSettings),
+    /// Fit the scans within a scope.
     Fit(Stages, Scope),
-    /// Write something to a file.
-    Write(Export, PathBuf),
-    /// The table of the results.
+    /// Write a file.
+    Write(OutputKind, PathBuf),
+    /// Select a tab of the results.
     Tab(ResultTab),
-    /// Another text in the box of the dialog that is open.
+    /// Set the text of the path field of the open dialog.
     Path(String),
-    /// What the dialog that is open says is done: open, or write, the path in its box.
+    /// Confirm the open dialog: open or write its path.
     Confirm,
-    /// Look for the path in a dialog of the system.
+    /// Replace the open dialog by a dialog of the system.
     Browse,
-    /// Close the dialog that is open.
+    /// Close the open dialog.
     CloseDialog,
-    /// Take a message away.
+    /// Remove a message, by its index.
     Dismiss(usize),
 }
 
-/// What can be written to a file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Export {
-    /// The figure, for print.
-    Figure(Picture),
-    /// Theory and readings.
-    Curves,
-    /// The fit, which `fit --again` and the viewer read.
-    Fit,
-}
-
-/// The format of a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Picture {
-    /// Lines that print at any size.
-    Svg,
-    /// Pixels.
-    Png,
-}
-
-impl Export {
-    /// The extension of its file.
-    pub fn extension(self) -> &'static str {
-        match self {
-            Self::Figure(Picture::Svg) => "svg",
-            Self::Figure(Picture::Png) => "png",
-            Self::Curves => "csv",
-            Self::Fit => "json",
-        }
-    }
-
-    /// What it is, in words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Figure(Picture::Svg) => "figure as SVG",
-            Self::Figure(Picture::Png) => "figure as PNG",
-            Self::Curves => "theory and readings as CSV",
-            Self::Fit => "fit as JSON",
-        }
-    }
-}
-
-/// A command without anything more to say: an entry of a menu, most of them with a key.
+/// An entry of a menu, with a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
     /// Ask for files to open.
@@ -116,48 +78,48 @@ pub enum Command {
     Close,
     /// Close all samples.
     CloseAll,
-    /// Ask where to write something.
-    Export(Export),
-    /// The parameters to the clipboard.
+    /// Ask for the path of a file to write.
+    Export(OutputKind),
+    /// Copy the parameters to the clipboard.
     CopyParameters,
-    /// Leave.
+    /// Quit the program.
     Quit,
-    /// Take back the last change of the parameters.
+    /// Undo the last change of the parameters.
     Undo,
-    /// Do it again.
+    /// Redo the change that was undone last.
     Redo,
-    /// All parameters back to the fitted ones.
+    /// Reset all parameters to the fitted values.
     ResetAll,
-    /// Fit the active sample in both stages.
+    /// Fit the active scan in both stages.
     Fit,
     /// Fit all wavelengths of all samples.
     FitAll,
-    /// Stop the fit.
+    /// Cancel the fit.
     Cancel,
-    /// Linear or logarithmic.
+    /// Toggle the logarithmic axis.
     Logarithmic,
-    /// f_r or f_r cos theta.
+    /// Toggle between f_r and f_r cos theta.
     TimesCosine,
-    /// Residuals below.
+    /// Toggle the residuals below the plot.
     Residuals,
-    /// All incidences in one plot.
+    /// Show all incidences in one plot.
     Together,
-    /// One plot for each incidence.
+    /// Show one plot for each incidence.
     Panels,
-    /// The polar form.
+    /// Show the polar plot.
     Polar,
-    /// Everything that is to be seen back into view.
+    /// Reset the zoom of all plots.
     ResetZoom,
-    /// The samples at the left.
+    /// Toggle the samples panel.
     Samples,
-    /// The parameters at the right.
+    /// Toggle the parameters panel.
     Parameters,
-    /// The results below.
+    /// Toggle the results panel.
     Results,
-    /// Dark or light.
+    /// Toggle between the dark and the light theme.
     Dark,
-    /// Dark or light as the system says.
+    /// Follow the theme of the system.
     SystemTheme,
-    /// What this is.
+    /// Show the version and the keys.
     About,
 }

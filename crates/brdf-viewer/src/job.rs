@@ -1,9 +1,8 @@
-//! The work that the state asks of the worker, and what the worker answers. Both know these types
-//! and not each other.
+//! The jobs that the state requests of the worker, and the events with which the worker answers.
+//! The state and the worker both use these types and do not depend on each other.
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use brdf_fit::plot::View;
 use brdf_fit::progress::Step;
@@ -11,126 +10,110 @@ use brdf_fit::report::{Depth, Report};
 use brdf_fit::scan::Convention;
 use brdf_fit::{FitOptions, Measurements};
 
-use crate::intent::{Export, Picture};
-use crate::state::sample::{Knobs, Sample, Scan, ScanId};
+use crate::cancel::CancelFlag;
+use crate::output_kind::{FigureFormat, OutputKind};
+use crate::state::id::ScanId;
+use crate::state::parameters::EditedParameters;
+use crate::state::sample::{Opened, Sample};
 
-/// Work.
+/// A job of the worker.
 #[derive(Debug)]
 pub enum Job {
-    /// Read a scan in this angular convention, or a fit as JSON, which says in which its scan is.
-    Read(PathBuf, Convention),
-    /// Read a scan that is already here: its name, its bytes and its angular convention.
-    ReadBytes(String, Vec<u8>, Convention),
-    /// Fit these scans one after the other.
+    /// Read or write a file.
+    File(FileJob),
+    /// Fit scans one after the other, and analyse each to a depth.
     Fit(Vec<FitJob>, Depth),
-    /// Write a file.
-    Write(PathBuf, Writing),
 }
 
-/// One fit.
+/// A job that reads or writes a file.
+#[derive(Debug)]
+pub enum FileJob {
+    /// Read a scan in an angular convention, or a fit as JSON, which states the convention of its
+    /// scan.
+    Open(PathBuf, Convention),
+    /// Read a scan from the content of a file: its name, its bytes and its angular convention.
+    OpenBytes(String, Vec<u8>, Convention),
+    /// Write a file.
+    Write(PathBuf, Output),
+}
+
+/// The fit of one scan.
 #[derive(Debug)]
 pub struct FitJob {
     /// The scan.
     pub scan: ScanId,
     /// Its readings.
     pub measurements: Arc<Measurements>,
-    /// The settings.
+    /// The options of the fit.
     pub options: FitOptions,
-    /// Ends it.
-    pub stop: Stop,
+    /// Cancels the fit.
+    pub cancel: CancelFlag,
 }
 
-/// Ends a fit before its next step, or before its first.
-#[derive(Debug, Clone, Default)]
-pub struct Stop(Arc<AtomicBool>);
-
-impl Stop {
-    /// Asks the fit to end.
-    pub fn ask(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether the fit was asked to end.
-    pub fn is_asked(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
-/// What is written.
+/// The data of a file that is written.
 #[derive(Debug)]
-pub enum Writing {
-    /// A figure of these samples.
-    Figure(Picture, Vec<Layer>, View),
-    /// Readings and theory; the theory alone at these incidences where there are no readings.
-    Curves(Arc<Measurements>, Knobs, Vec<f64>),
+pub enum Output {
+    /// A figure of samples.
+    Figure(FigureFormat, Vec<FigureLayer>, View),
+    /// Readings and theory; without readings, the theory at incidence angles in radians.
+    Curves(Arc<Measurements>, EditedParameters, Vec<f64>),
     /// Fits.
     Fit(Vec<Arc<Report>>),
 }
 
-/// A sample as a figure needs it.
+/// The data of a sample that a figure shows.
 #[derive(Debug)]
-pub struct Layer {
-    /// Its name.
+pub struct FigureLayer {
+    /// The name of the sample.
     pub name: String,
     /// Its readings.
     pub measurements: Arc<Measurements>,
-    /// The theory.
-    pub knobs: Knobs,
-    /// The fit, where the theory is its own.
-    pub fitted: Option<Arc<Report>>,
-    /// The incidences that are shown, in radians.
+    /// The parameters of the theory.
+    pub parameters: EditedParameters,
+    /// The fit with these parameters, if there is one.
+    pub fit: Option<Arc<Report>>,
+    /// The visible incidence angles, in radians.
     pub incidences: Vec<f64>,
-    /// Its family of colours; `None` where it is the only sample.
+    /// The colour family; `None` if the figure shows only this sample.
     pub family: Option<usize>,
 }
 
-impl Layer {
-    /// A sample as it is shown, in this family of colours.
-    pub fn of(sample: &Sample, family: Option<usize>) -> Self {
+impl FigureLayer {
+    /// The visible incidences of a sample, in the colours of a family.
+    pub fn new(sample: &Sample, family: Option<usize>) -> Self {
         let scan = sample.scan();
         Self {
             name: sample.name.clone(),
             measurements: Arc::clone(&scan.measurements),
-            knobs: scan.knobs,
-            fitted: scan.fit_shown().cloned(),
-            incidences: scan.shown_psi(),
+            parameters: scan.parameters,
+            fit: scan.current_fit().cloned(),
+            incidences: scan.visible_psi(),
             family,
         }
     }
 }
 
-/// A scan that was read, with its wavelengths.
-#[derive(Debug)]
-pub struct Opened {
-    /// What was opened: a file, or an entry of the built-in menu.
-    pub source: String,
-    /// The file of the readings, where they are from one.
-    pub file: Option<PathBuf>,
-    /// One scan for each wavelength.
-    pub scans: Vec<Scan>,
-}
-
-/// What the worker has done.
+/// A result of a job, or an answer of a dialog.
 #[derive(Debug)]
 pub enum Event {
-    /// Something was opened: the file that was asked for, where it was one, and what is in it.
+    /// Something was opened: the path that was requested, if any, and the samples found there.
     Opened(Option<PathBuf>, Vec<Opened>),
-    /// A source cannot be opened, and why.
-    NotOpened(String),
-    /// Files were chosen in a dialog.
-    Chosen(Vec<PathBuf>),
-    /// Where to write was chosen in a dialog.
-    ChosenExport(Export, PathBuf),
+    /// Something could not be opened, and the error message.
+    OpenFailed(String),
+    /// Files to open were chosen in a dialog.
+    FilesChosen(Vec<PathBuf>),
+    /// The path of a file to write was chosen in a dialog.
+    OutputChosen(OutputKind, PathBuf),
     /// A fit made a step.
     Step(ScanId, Step),
-    /// A fit has ended, well or not: its report says how.
+    /// A fit has ended with a report, which contains the fit or its error.
     Fitted(ScanId, Box<Report>),
-    /// A fit broke off for a reason that is none of the data, and what is known of it.
-    Broken(ScanId, String),
-    /// All fits have ended, or were stopped.
+    /// A fit was ended by an internal error, and the error message.
+    FitAborted(ScanId, String),
+    /// All fits have ended or were cancelled.
     FitsEnded,
     /// A file was written.
     Written(PathBuf),
-    /// A file was not written, and why.
-    NotWritten(String),
+    /// A file could not be written, and the error message.
+    WriteFailed(String),
 }

@@ -1,25 +1,28 @@
-//! The desktop viewer: theory against experiment for each incidence angle, with live parameters.
-//!
-//! Three parts, and what flows between them:
+//! The desktop viewer: theory and measurement for each incidence angle, with interactive parameters.
 //!
 //! ```text
-//!              draw                        jobs: read, fit, write
+//!              draw                        jobs: open, fit, write
 //!   panels <--------- State <------- app ------------------------> worker (threads)
 //!     |                 ^             ^                               |
 //!     +--- intents -----+             +----------- events ------------+
 //! ```
 //!
-//! - [`state`] holds what is loaded, chosen and fitted, and changes by [`intent::Intent`] only. It
-//!   knows no widget and no thread, so that it can be tested by itself. What follows from it (the
-//!   curves, E, the reflectance) is worked out once a change, in [`state::shown`].
-//! - [`panels`] draw the state and answer with intents, a panel a file; [`plot`] is the one in the
-//!   middle. What they share stands in [`axis`], [`theme`] and `widgets`.
-//! - [`worker`] reads, fits and writes on threads of its own, calls `brdf_fit` for it, and answers
-//!   with events. [`job`] has the types of both: neither knows the other.
-//! - [`app`] is the round trip of a frame: events in, intents applied, panels drawn, jobs out.
+//! - [`state`] holds the samples, the settings and the fits, and changes only by
+//!   [`intent::Intent`]s and by [`job::Event`]s of the worker. It uses neither widgets nor threads,
+//!   so that it can be tested by itself. Curves, E and reflectances are derived from it once per
+//!   change, in [`state::derived`].
+//! - [`panels`] draw the state, one panel per file, and answer with intents; [`plot`] is the
+//!   central one. [`theme`] and `widgets` are shared by all of them.
+//! - [`worker`] opens files, fits and writes files on its own threads, by calling `brdf_fit`, and
+//!   answers with events. [`job`] defines the types of both directions.
+//! - [`app`] runs a frame: it takes events, applies intents, draws panels and starts jobs.
 //!
-//! No formula of the model stands here: curves, errors and reflectances come from `brdf_fit` and
-//! `brdf_core`, the figures that are written come from `brdf_fit::plot`.
+//! The modules form layers without cycles. From the bottom: [`cancel`], [`output_kind`] and the
+//! types of [`state`]; [`intent`] and [`job`]; [`state::State`]; [`worker`], [`plot`], [`panels`];
+//! [`app`].
+//!
+//! The viewer contains no formula of the model: curves, errors and reflectances come from
+//! `brdf_fit` and `brdf_core`, exported figures from `brdf_fit::plot`.
 
 #![allow(
     clippy::cast_possible_truncation,
@@ -28,20 +31,19 @@
 )]
 
 pub mod app;
-pub mod axis;
+pub mod cancel;
 pub mod dialogs;
 pub mod intent;
 pub mod job;
+pub mod output_kind;
 pub mod panels;
 pub mod plot;
 pub mod raster;
-pub mod reading;
 pub mod screenshot;
 pub mod shortcuts;
 pub mod state;
 pub mod theme;
 mod widgets;
 pub mod worker;
-pub mod writing;
 
 pub use app::Viewer;

@@ -1,5 +1,6 @@
-//! The program: a window, or with `--screenshot` a picture of one.
+//! The `viewer` program: opens a window, or with `--screenshot` renders one to a file.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -7,20 +8,20 @@ use brdf_fit::model::Model;
 use brdf_fit::output::resolved;
 use brdf_fit::scan::{Convention, Side};
 use brdf_viewer::Viewer;
-use brdf_viewer::dialogs::Native;
+use brdf_viewer::dialogs::NativeDialogs;
 use brdf_viewer::intent::{Command, Intent};
-use brdf_viewer::screenshot::{Unseen, write_png};
-use brdf_viewer::state::fitting::{Scope, Stages};
+use brdf_viewer::screenshot::{OffscreenWindow, write_png};
+use brdf_viewer::state::fit_settings::{Scope, Stages};
 use brdf_viewer::state::interface::ResultTab;
 use brdf_viewer::state::saved::{SMALLEST_WINDOW, Settings};
 use clap::{Parser, ValueEnum};
 use eframe::egui;
 
-/// Theory against experiment for each incidence angle, with live parameters.
+/// Theory and measurement for each incidence angle, with interactive parameters.
 ///
 /// Opens scans (tables with the columns psi_deg, theta_deg and brdf_per_sr) and fits as JSON, shows
-/// readings and theory, and fits. Without a file it opens what was open the last time, or a
-/// measured sample of its own.
+/// readings and theory, and fits. Without a file it opens the files of the last session, or a
+/// built-in measured sample.
 #[derive(Parser)]
 #[command(name = "viewer", version, max_term_width = 100)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
@@ -29,57 +30,58 @@ struct Arguments {
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
 
-    /// Write a picture of the window to this file, as PNG, and leave; needs no display
+    /// Write a picture of the window to this file, as PNG, and exit; needs no display
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
 
-    /// The side of the surface normal on which the scans count theta positive, source or forward
-    /// [default: as it was left, or source]
+    /// The side of the surface normal on which theta is positive in the scans, source or forward
+    /// [default: that of the last session, or source]
     #[arg(long, value_name = "SIDE")]
     theta_positive: Option<Side>,
 
-    /// The side on which the azimuth phi of the scans is zero, source or forward [default: as it was
-    /// left, or source]
+    /// The side on which the azimuth phi is zero in the scans, source or forward [default: that of
+    /// the last session, or source]
     #[arg(long, value_name = "SIDE")]
     phi_zero: Option<Side>,
 
-    /// Size of the window in points, at least 900x600 [default: as it was left, or 1280x800]
+    /// Size of the window in points, at least 900x600 [default: that of the last session,
+    /// or 1280x800]
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<[f32; 2]>,
 
-    /// Pixels for each point of the picture
+    /// Pixels per point of the picture
     #[arg(long, value_name = "SCALE", default_value_t = 1.0, value_parser = parse_scale)]
     scale: f32,
 
-    /// Colours of the window [default: as it was left, or what the system says]
+    /// Colour theme [default: that of the last session, or that of the system]
     #[arg(long, value_enum, value_name = "THEME")]
     theme: Option<Theme>,
 
-    /// Fit every file first
+    /// Fit every file after opening
     #[arg(long)]
     fit: bool,
 
-    /// The model to show and to fit
+    /// Model to show and to fit
     #[arg(long, value_name = "MODEL")]
     model: Option<Model>,
 
-    /// A logarithmic axis
+    /// Use a logarithmic axis
     #[arg(long)]
     log: bool,
 
-    /// f_r cos theta
+    /// Show f_r cos theta
     #[arg(long)]
     cosine: bool,
 
-    /// Residuals below
+    /// Show residuals below the plot
     #[arg(long)]
     residuals: bool,
 
-    /// How the incidences are arranged
+    /// Arrangement of the incidences
     #[arg(long, value_enum, value_name = "LAYOUT")]
     layout: Option<Arrangement>,
 
-    /// What of the results is shown
+    /// Tab of the results
     #[arg(long, value_enum, value_name = "TAB")]
     results: Option<Results>,
 }
@@ -107,10 +109,10 @@ enum Results {
     Reflectance,
 }
 
-/// The largest picture, in points a side.
-const LARGEST: f32 = 8192.0;
+/// The largest side of a picture, in points.
+const LARGEST_SIDE: f32 = 8192.0;
 
-/// The largest picture, in pixels: each takes some 20 bytes while it is drawn.
+/// The largest picture, in pixels. Rendering takes about 20 bytes per pixel.
 const MOST_PIXELS: f32 = 8192.0 * 8192.0;
 
 fn parse_size(text: &str) -> Result<[f32; 2], String> {
@@ -118,7 +120,7 @@ fn parse_size(text: &str) -> Result<[f32; 2], String> {
     let (width, height) = text.split_once('x').ok_or_else(expected)?;
     let side = |text: &str, least: f32| {
         let side: f32 = text.parse().map_err(|_| expected())?;
-        if (least..=LARGEST).contains(&side) {
+        if (least..=LARGEST_SIDE).contains(&side) {
             Ok(side)
         } else {
             Err(expected())
@@ -152,8 +154,8 @@ fn main() -> ExitCode {
     }
 }
 
-fn open_window(arguments: &Arguments) -> Result<(), String> {
-    let settings = Settings::of(settings_file());
+fn open_window(arguments: &Arguments) -> Result<(), Box<dyn Error>> {
+    let settings = Settings::load(settings_file());
     let viewport = egui::ViewportBuilder::default()
         .with_title("brdf-viewer")
         .with_app_id("brdf-viewer")
@@ -165,73 +167,78 @@ fn open_window(arguments: &Arguments) -> Result<(), String> {
         ..eframe::NativeOptions::default()
     };
     let create = |creation: &eframe::CreationContext| {
-        let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(Native), settings);
+        let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(NativeDialogs), settings);
         start(&mut viewer, arguments);
         Ok(Box::new(viewer) as Box<dyn eframe::App>)
     };
     eframe::run_native("brdf-viewer", options, Box::new(create)).map_err(|error| {
-        format!("no window can be opened: {error} (--screenshot OUT.png needs no display)")
+        format!("cannot open a window: {error} (--screenshot OUT.png needs no display)").into()
     })
 }
 
-/// Where the settings are kept; `None` where the system has no place for them.
+/// The file of the settings; `None` if the system has no folder for it.
 fn settings_file() -> Option<PathBuf> {
     let folders = directories::ProjectDirs::from("", "", "brdf-viewer")?;
     Some(folders.config_dir().join("state.json"))
 }
 
-fn take_screenshot(arguments: &Arguments, path: &Path) -> Result<(), String> {
-    let size = arguments.size.unwrap_or(Settings::unkept().saved.window);
+fn take_screenshot(arguments: &Arguments, path: &Path) -> Result<(), Box<dyn Error>> {
+    let size = arguments.size.unwrap_or(Settings::in_memory().saved.window);
     check_picture(size, arguments.scale)?;
     if arguments
         .files
         .iter()
         .any(|file| resolved(file) == resolved(path))
     {
-        return Err(is_input(path));
+        return Err(is_input(path).into());
     }
-    let mut window = Unseen::new(size, arguments.scale);
-    let mut viewer = Viewer::new(window.context(), Box::new(Native), Settings::unkept());
+    let mut window = OffscreenWindow::new(size, arguments.scale);
+    let mut viewer = Viewer::new(
+        window.context(),
+        Box::new(NativeDialogs),
+        Settings::in_memory(),
+    );
     start(&mut viewer, arguments);
     let image = window.picture(&mut viewer)?;
-    // A fit has opened its scan as well.
+    // Opening a fit opens its scan, too.
     if viewer.state.is_open(path) {
-        return Err(is_input(path));
+        return Err(is_input(path).into());
     }
     write_png(&image, path)?;
     let errors = viewer.state.errors();
     if errors.is_empty() {
         Ok(())
     } else {
-        Err(errors.join("\n"))
+        Err(errors.join("\n").into())
     }
 }
 
-/// No picture takes the place of what it is of.
+/// The error message for a picture that would replace an input file.
 fn is_input(path: &Path) -> String {
     let path = path.display();
-    format!("{path}: is an input of this command: expected a file of its own for the picture")
+    format!("{path}: is an input of this command: expected a different file for the picture")
 }
 
-fn check_picture([width, height]: [f32; 2], scale: f32) -> Result<(), String> {
+fn check_picture([width, height]: [f32; 2], scale: f32) -> Result<(), Box<dyn Error>> {
     let pixels = width * height * scale * scale;
     if pixels <= MOST_PIXELS {
         return Ok(());
     }
-    Err(format!(
+    let message = format!(
         "--size {width}x{height} with --scale {scale}: {:.0} million pixels: expected {:.0} million \
          at most",
         pixels / 1e6,
         MOST_PIXELS / 1e6
-    ))
+    );
+    Err(message.into())
 }
 
-/// What the options say is to be done.
+/// Applies the options: opens the files, sets the view and starts the fit.
 fn start(viewer: &mut Viewer, arguments: &Arguments) {
-    let left = viewer.state.convention;
+    let last = viewer.state.convention;
     viewer.state.apply(Intent::Convention(Convention {
-        theta_positive: arguments.theta_positive.unwrap_or(left.theta_positive),
-        phi_zero: arguments.phi_zero.unwrap_or(left.phi_zero),
+        theta_positive: arguments.theta_positive.unwrap_or(last.theta_positive),
+        phi_zero: arguments.phi_zero.unwrap_or(last.phi_zero),
     }));
     viewer.open_at_start(arguments.files.clone());
     set_view(viewer, arguments);
@@ -241,10 +248,10 @@ fn start(viewer: &mut Viewer, arguments: &Arguments) {
     let fit = arguments
         .fit
         .then_some(Intent::Fit(Stages::Both, Scope::All));
-    viewer.when_read(model.into_iter().chain(fit).collect());
+    viewer.when_opened(model.into_iter().chain(fit).collect());
 }
 
-/// What the options say of the view.
+/// Applies the options of the view.
 fn set_view(viewer: &mut Viewer, arguments: &Arguments) {
     let state = &mut viewer.state;
     let layout = match arguments.layout {
@@ -253,15 +260,15 @@ fn set_view(viewer: &mut Viewer, arguments: &Arguments) {
         Some(Arrangement::Polar) => Some(Command::Polar),
         None => None,
     };
-    let switched = [
+    let toggles = [
         (arguments.log, Command::Logarithmic),
         (arguments.cosine, Command::TimesCosine),
         (arguments.residuals, Command::Residuals),
     ];
-    let switched = switched.into_iter().filter(|(on, _)| *on);
-    for command in switched.map(|(_, command)| command).chain(layout) {
+    let toggles = toggles.into_iter().filter(|(on, _)| *on);
+    for command in toggles.map(|(_, command)| command).chain(layout) {
         if state.is_on(command) == Some(false) {
-            state.apply(Intent::Do(command));
+            state.apply(Intent::Command(command));
         }
     }
     if let Some(theme) = arguments.theme {

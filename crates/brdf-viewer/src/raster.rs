@@ -1,7 +1,7 @@
-//! Draws a frame without a screen: egui's triangles to pixels, by the processor alone.
+//! Rasterises the triangles of an egui frame on the CPU.
 //!
-//! For `--screenshot` and for the tests, which need neither a display nor a graphics card for it
-//! and get the same pixels on every machine.
+//! Screenshots and tests therefore need neither a display nor a graphics card, and get the same
+//! pixels on every machine.
 
 use std::collections::HashMap;
 
@@ -9,20 +9,20 @@ use egui::epaint::{ImageData, ImageDelta, Mesh, Primitive, Vertex};
 use egui::{ColorImage, Context, FullOutput, Rect, TextureId, TexturesDelta};
 use image::RgbaImage;
 
-/// The textures so far.
+/// A rasteriser with the current textures.
 #[derive(Default)]
 pub struct Rasteriser {
     textures: HashMap<TextureId, ColorImage>,
 }
 
-/// The pixels of a picture, colours premultiplied by their alpha, from 0 to 1.
+/// An image. Colour channels are premultiplied by alpha and range from 0 to 1.
 struct Canvas {
     width: usize,
     height: usize,
     pixels: Vec<[f32; 4]>,
 }
 
-/// Whole pixels from the first to below the last.
+/// Half-open ranges of columns and rows.
 #[derive(Clone, Copy)]
 struct Window {
     x: (i32, i32),
@@ -30,7 +30,7 @@ struct Window {
 }
 
 impl Rasteriser {
-    /// Takes over new and changed textures.
+    /// Applies changes of the textures.
     pub fn update(&mut self, delta: &mut TexturesDelta) {
         for (id, deltas) in delta.set.drain() {
             for delta in &deltas {
@@ -48,7 +48,7 @@ impl Rasteriser {
             self.textures.insert(id, (**image).clone());
             return;
         };
-        // A part of a texture that nobody has seen whole cannot be drawn with.
+        // A partial update needs the texture that it changes.
         let Some(texture) = self.textures.get_mut(&id) else {
             return;
         };
@@ -60,7 +60,7 @@ impl Rasteriser {
         }
     }
 
-    /// Draws a frame.
+    /// Renders a frame.
     pub fn draw(&self, ctx: &Context, output: &FullOutput) -> RgbaImage {
         let scale = output.pixels_per_point;
         let size = ctx.content_rect().size() * scale;
@@ -112,7 +112,7 @@ impl Canvas {
         for row in y.0..y.1 {
             for column in x.0..x.1 {
                 let at = [f64::from(column) + 0.5, f64::from(row) + 0.5];
-                let Some(parts) = triangle.parts(at) else {
+                let Some(parts) = triangle.barycentric(at) else {
                     continue;
                 };
                 let source = triangle.colour(parts, texture);
@@ -132,25 +132,25 @@ impl Canvas {
     }
 }
 
-/// A triangle on the pixels, its corners so that its area is positive.
+/// A triangle in pixel coordinates, with its corners ordered such that its area is positive.
 struct Triangle {
     corners: [Vertex; 3],
     at: [[f64; 2]; 3],
     area: f64,
-    /// All corners take the same colour from the same place: most triangles have no picture.
-    plain: bool,
+    /// Whether all corners have the same texture coordinates, as in most triangles.
+    untextured: bool,
 }
 
 impl Triangle {
-    /// `None` where it has no area.
+    /// `None` if the area is zero or not finite.
     fn new(corners: [Vertex; 3], scale: f32) -> Option<Self> {
-        let place = |v: &Vertex| [v.pos.x, v.pos.y].map(|x| f64::from(x) * f64::from(scale));
-        let at = corners.each_ref().map(place);
+        let position = |v: &Vertex| [v.pos.x, v.pos.y].map(|x| f64::from(x) * f64::from(scale));
+        let at = corners.each_ref().map(position);
         let area = edge(at[0], at[1], at[2]);
         if area == 0.0 || !area.is_finite() {
             return None;
         }
-        let plain = corners.iter().all(|corner| corner.uv == corners[0].uv);
+        let untextured = corners.iter().all(|corner| corner.uv == corners[0].uv);
         let [a, b, c] = corners;
         let [p, q, r] = at;
         Some(if area > 0.0 {
@@ -158,19 +158,19 @@ impl Triangle {
                 corners,
                 at,
                 area,
-                plain,
+                untextured,
             }
         } else {
             Self {
                 corners: [a, c, b],
                 at: [p, r, q],
                 area: -area,
-                plain,
+                untextured,
             }
         })
     }
 
-    /// The columns and rows that it may touch.
+    /// The columns and rows of its bounding box.
     fn within(&self, window: Window) -> ((i32, i32), (i32, i32)) {
         let span = |i: usize, (from, to): (i32, i32)| {
             let of = self.at.map(|at| at[i]);
@@ -181,9 +181,9 @@ impl Triangle {
         (span(0, window.x), span(1, window.y))
     }
 
-    /// The weights of the corners at a point; `None` outside. A point on an edge that two triangles
-    /// share is in one of them: the one to which it is a top or a left edge.
-    fn parts(&self, at: [f64; 2]) -> Option<[f64; 3]> {
+    /// The barycentric coordinates of a point; `None` outside. A point on an edge shared by two
+    /// triangles belongs to the one of which it is a top or a left edge.
+    fn barycentric(&self, at: [f64; 2]) -> Option<[f64; 3]> {
         let [a, b, c] = self.at;
         let mut parts = [0.0; 3];
         for (part, (from, to)) in parts.iter_mut().zip([(b, c), (c, a), (a, b)]) {
@@ -202,7 +202,7 @@ impl Triangle {
             let corners = self.corners.iter().zip(parts);
             corners.map(|(corner, part)| of(corner) * part).sum::<f64>()
         };
-        let uv = if self.plain {
+        let uv = if self.untextured {
             let uv = self.corners[0].uv;
             [f64::from(uv.x), f64::from(uv.y)]
         } else {
@@ -216,12 +216,12 @@ impl Triangle {
     }
 }
 
-/// Twice the area of the triangle of three points.
+/// Twice the signed area of the triangle of three points.
 fn edge(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// The colour of a texture between its pixels.
+/// The colour of a texture at texture coordinates, by bilinear interpolation.
 fn sample(texture: &ColorImage, [u, v]: [f64; 2]) -> [f64; 4] {
     let [width, height] = texture.size;
     let (x, y) = (u * width as f64 - 0.5, v * height as f64 - 0.5);
@@ -270,7 +270,7 @@ mod tests {
         assert_eq!(image.dimensions(), (40, 20));
         assert_eq!(image.get_pixel(10, 7).0, [100, 0, 0, 128]);
         assert_eq!(image.get_pixel(30, 7).0, [0; 4]);
-        // The two triangles share a diagonal: no pixel is drawn twice or not at all.
+        // The two triangles share a diagonal: each pixel is drawn exactly once.
         let inside = (7..13).flat_map(|x| (6..9).map(move |y| (x, y)));
         for (x, y) in inside {
             assert_eq!(image.get_pixel(x, y).0, [100, 0, 0, 128], "{x} {y}");
@@ -278,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn words_leave_ink() {
+    fn text_is_drawn() {
         let image = picture(|painter| {
             let font = egui::FontId::proportional(14.0);
             painter.text(

@@ -1,25 +1,40 @@
-//! A picture of the window without a person and without a display.
+//! Renders the window to an image, without a display.
 
 use std::path::Path;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use brdf_fit::output::write_file;
+use brdf_fit::output::{WriteError, write_file};
 use egui::epaint::Primitive;
 use egui::{Context, RawInput, Rect, Vec2, ViewportId, ViewportInfo, pos2, vec2};
-use image::{ImageFormat, RgbaImage};
+use image::{ImageError, ImageFormat, RgbaImage};
 
-use crate::Viewer;
+use crate::app::Viewer;
 use crate::raster::Rasteriser;
 
-/// Layouts settle within so many frames after the last change.
+/// Number of frames after the last change within which the layout settles.
 const FRAMES: usize = 8;
 
-/// Longer than this no fit of a picture takes.
-const PATIENCE: Duration = Duration::from_mins(10);
+/// Longest time that the jobs of a screenshot may take.
+const TIMEOUT: Duration = Duration::from_mins(10);
 
-/// A window that nobody sees.
-pub struct Unseen {
+/// Why a screenshot cannot be taken or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScreenshotError {
+    /// The jobs take too long.
+    #[error("the fit takes longer than ten minutes")]
+    Timeout,
+    /// The image cannot be encoded as PNG.
+    #[error("the picture cannot be encoded: {0}")]
+    Encode(#[from] ImageError),
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// A window without a display.
+pub struct OffscreenWindow {
     ctx: Context,
     rasteriser: Rasteriser,
     size: Vec2,
@@ -27,8 +42,8 @@ pub struct Unseen {
     started: Instant,
 }
 
-impl Unseen {
-    /// A window of a size in points, with so many pixels for each.
+impl OffscreenWindow {
+    /// A window with a size in points and a number of pixels per point.
     pub fn new(size: [f32; 2], scale: f32) -> Self {
         let ctx = Context::default();
         ctx.options_mut(|options| options.fallback_theme = egui::Theme::Light);
@@ -41,15 +56,17 @@ impl Unseen {
         }
     }
 
-    /// The context of the window.
+    /// The egui context of the window.
     pub fn context(&self) -> &Context {
         &self.ctx
     }
 
-    /// Draws frames until all work is done, and the picture of the last one.
+    /// Draws frames until all jobs are done, and renders the last one.
     ///
-    /// Errors: the work takes longer than ten minutes.
-    pub fn picture(&mut self, viewer: &mut Viewer) -> Result<RgbaImage, String> {
+    /// # Errors
+    ///
+    /// [`ScreenshotError::Timeout`] if the jobs take longer than ten minutes.
+    pub fn picture(&mut self, viewer: &mut Viewer) -> Result<RgbaImage, ScreenshotError> {
         let started = Instant::now();
         let mut left = FRAMES;
         loop {
@@ -63,13 +80,13 @@ impl Unseen {
             if left == 0 {
                 return Ok(self.rasteriser.draw(&self.ctx, &output));
             }
-            if started.elapsed() > PATIENCE {
-                return Err("the fit takes longer than ten minutes".to_owned());
+            if started.elapsed() > TIMEOUT {
+                return Err(ScreenshotError::Timeout);
             }
         }
     }
 
-    /// A frame with its triangles, as a graphics card would get them; how many there are.
+    /// Draws a frame up to the triangles for the graphics card, and returns their number.
     pub fn frame_and_triangles(&mut self, viewer: &mut Viewer) -> usize {
         let output = self.frame(viewer);
         let scale = output.pixels_per_point;
@@ -100,13 +117,14 @@ impl Unseen {
     }
 }
 
-/// Writes a picture as PNG, whole or not at all.
+/// Writes an image as PNG. The file is replaced only when it is complete.
 ///
-/// Errors: what the system says.
-pub fn write_png(image: &RgbaImage, path: &Path) -> Result<(), String> {
+/// # Errors
+///
+/// The image cannot be encoded, or the file cannot be written.
+pub fn write_png(image: &RgbaImage, path: &Path) -> Result<(), ScreenshotError> {
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image
-        .write_to(&mut bytes, ImageFormat::Png)
-        .map_err(|error| error.to_string())?;
-    write_file(path, |writer| writer.write_all(bytes.get_ref())).map_err(|error| error.to_string())
+    image.write_to(&mut bytes, ImageFormat::Png)?;
+    write_file(path, |writer| writer.write_all(bytes.get_ref()))?;
+    Ok(())
 }

@@ -1,22 +1,23 @@
-//! The commands with their names and keys, in one place for the menus and the keyboard.
+//! The names and keys of the commands, and the menus that contain them.
 
 use egui::{Key, KeyboardShortcut, Modifiers, Popup};
 
-use crate::intent::{Command, Export, Picture};
+use crate::intent::Command;
+use crate::output_kind::{FigureFormat, OutputKind};
 
 const NONE: Modifiers = Modifiers::NONE;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const SHIFTED: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-/// A menu with its entries; `None` is a line between them.
+/// A menu.
 pub struct Menu {
-    /// Its title.
+    /// The title.
     pub title: &'static str,
-    /// Its entries.
+    /// The entries; `None` is a separator.
     pub entries: &'static [Option<Command>],
 }
 
-/// The menus. That of the built-in samples stands between the first and the second.
+/// The menus. The menu of built-in samples is placed between the first and the second one.
 pub const MENUS: [Menu; 5] = [
     Menu {
         title: "File",
@@ -26,10 +27,10 @@ pub const MENUS: [Menu; 5] = [
             Some(Command::Close),
             Some(Command::CloseAll),
             None,
-            Some(Command::Export(Export::Figure(Picture::Svg))),
-            Some(Command::Export(Export::Figure(Picture::Png))),
-            Some(Command::Export(Export::Curves)),
-            Some(Command::Export(Export::Fit)),
+            Some(Command::Export(OutputKind::Figure(FigureFormat::Svg))),
+            Some(Command::Export(OutputKind::Figure(FigureFormat::Png))),
+            Some(Command::Export(OutputKind::Curves)),
+            Some(Command::Export(OutputKind::Fit)),
             None,
             Some(Command::Quit),
         ],
@@ -79,52 +80,52 @@ pub const MENUS: [Menu; 5] = [
 ];
 
 impl Command {
-    /// Its name in the menu.
+    /// The name in the menu.
     pub fn name(self) -> &'static str {
         match self {
             Self::Open => "Open...",
             Self::OpenPath => "Open path...",
             Self::Close => "Close sample",
             Self::CloseAll => "Close all samples",
-            Self::Export(Export::Figure(Picture::Svg)) => "Export figure as SVG...",
-            Self::Export(Export::Figure(Picture::Png)) => "Export figure as PNG...",
-            Self::Export(Export::Curves) => "Export theory and readings as CSV...",
-            Self::Export(Export::Fit) => "Save fit as JSON...",
+            Self::Export(OutputKind::Figure(FigureFormat::Svg)) => "Export figure as SVG...",
+            Self::Export(OutputKind::Figure(FigureFormat::Png)) => "Export figure as PNG...",
+            Self::Export(OutputKind::Curves) => "Export theory and readings as CSV...",
+            Self::Export(OutputKind::Fit) => "Save fit as JSON...",
             Self::CopyParameters => "Copy parameter table",
             Self::Quit => "Quit",
             Self::Undo => "Undo",
             Self::Redo => "Redo",
-            Self::ResetAll => "Reset parameters to the fit",
-            Self::Fit => "Fit in both stages",
+            Self::ResetAll => "Reset parameters to fitted values",
+            Self::Fit => "Fit both stages",
             Self::FitAll => "Fit all samples and wavelengths",
-            Self::Cancel => "Cancel the fit",
+            Self::Cancel => "Cancel fit",
             Self::Logarithmic => "Logarithmic BRDF axis",
             Self::TimesCosine => "BRDF times cos theta",
-            Self::Residuals => "Residuals below",
+            Self::Residuals => "Residuals",
             Self::Together => "All incidences in one plot",
             Self::Panels => "One plot for each incidence",
-            Self::Polar => "Polar form",
+            Self::Polar => "Polar plot",
             Self::ResetZoom => "Reset zoom",
             Self::Samples => "Samples panel",
             Self::Parameters => "Parameters panel",
             Self::Results => "Results panel",
-            Self::Dark => "Dark",
-            Self::SystemTheme => "Dark or light as the system",
-            Self::About => "About and keys",
+            Self::Dark => "Dark theme",
+            Self::SystemTheme => "Theme of the system",
+            Self::About => "About and keyboard shortcuts",
         }
     }
 
-    /// Its key.
+    /// The key.
     pub fn shortcut(self) -> Option<KeyboardShortcut> {
         let (modifiers, key) = match self {
             Self::Open => (COMMAND, Key::O),
             Self::OpenPath => (SHIFTED, Key::O),
             Self::Close => (COMMAND, Key::W),
             Self::CloseAll => (SHIFTED, Key::W),
-            Self::Export(Export::Figure(Picture::Svg)) => (COMMAND, Key::E),
-            Self::Export(Export::Figure(Picture::Png)) => (SHIFTED, Key::E),
-            Self::Export(Export::Curves) => (SHIFTED, Key::S),
-            Self::Export(Export::Fit) => (COMMAND, Key::S),
+            Self::Export(OutputKind::Figure(FigureFormat::Svg)) => (COMMAND, Key::E),
+            Self::Export(OutputKind::Figure(FigureFormat::Png)) => (SHIFTED, Key::E),
+            Self::Export(OutputKind::Curves) => (SHIFTED, Key::S),
+            Self::Export(OutputKind::Fit) => (COMMAND, Key::S),
             Self::CopyParameters => (SHIFTED, Key::C),
             Self::Quit => (COMMAND, Key::Q),
             Self::Undo => (COMMAND, Key::Z),
@@ -150,7 +151,7 @@ impl Command {
         Some(KeyboardShortcut::new(modifiers, key))
     }
 
-    /// Whether its key means something else while a text is edited.
+    /// Whether the key has another meaning while a text is edited.
     fn belongs_to_text(self) -> bool {
         matches!(
             self,
@@ -162,9 +163,9 @@ impl Command {
 /// The commands whose keys were pressed.
 pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
     let editing = ctx.text_edit_focused();
-    // Escape closes a menu first; what it means beside that is for the next time.
+    // Escape only closes a menu if one is open.
     let closes_popup = |command: Command| command == Command::Cancel && Popup::is_any_open(ctx);
-    // A key with more modifiers comes before the same with fewer.
+    // A key with Shift is tested before the same key without it, which would match as well.
     let mut all: Vec<(Command, KeyboardShortcut)> = MENUS
         .iter()
         .flat_map(|menu| menu.entries.iter().copied().flatten())

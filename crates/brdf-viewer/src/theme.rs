@@ -1,9 +1,9 @@
-//! Dark and light.
+//! The dark and the light theme, and the colours of samples in each.
 
 use brdf_fit::plot::Ground;
 use egui::{Color32, Context, ThemePreference};
 
-/// Sets what the user chose; `None` is what the system says.
+/// Sets the theme that the user chose; `None` follows the system.
 pub fn set(ctx: &Context, dark: Option<bool>) {
     let wanted = match dark {
         None => ThemePreference::System,
@@ -15,7 +15,7 @@ pub fn set(ctx: &Context, dark: Option<bool>) {
     }
 }
 
-/// The ground that colours are seen on.
+/// The background of the current theme.
 pub fn ground(ctx: &Context) -> Ground {
     match ctx.theme() {
         egui::Theme::Dark => Ground::Dark,
@@ -23,24 +23,25 @@ pub fn ground(ctx: &Context) -> Ground {
     }
 }
 
-/// Whether the system's windows are dark, or else those of this program by default.
+/// Whether the theme of the system is dark. Where the system has none, the default of this program.
 pub fn system_is_dark(ctx: &Context) -> bool {
     let theme = ctx.system_theme();
     theme.unwrap_or_else(|| ctx.options(|options| options.fallback_theme)) == egui::Theme::Dark
 }
 
-/// The colour of an incidence of a sample of this family; `None` where it is the only sample.
+/// The colour of incidence `i` of `count` of a sample in a colour family; `None` is the family of a
+/// single sample.
 pub fn colour(family: Option<usize>, i: usize, count: usize, ground: Ground) -> Color32 {
     rgb(brdf_fit::plot::colour(family, i, count, ground))
 }
 
-/// The colour that a sample is known by, beside others.
+/// The colour that identifies a colour family among several samples.
 pub fn family_colour(family: usize, ground: Ground) -> Color32 {
     rgb(brdf_fit::plot::family_colour(family, ground))
 }
 
-/// One of two colours for what is no sample.
-pub fn plain(i: usize, ground: Ground) -> Color32 {
+/// One of two colours for curves that belong to no sample.
+pub fn series_colour(i: usize, ground: Ground) -> Color32 {
     colour(None, i, 2, ground)
 }
 

@@ -1,8 +1,7 @@
-//! Random events: clicks, drags, keys, drops and resizes must not break the window, nor fill the
-//! memory.
+//! Random clicks, drags, keys, drops and resizes must neither crash the window nor leak memory.
 //!
-//! `VIEWER_MONKEY_SECONDS` says for how long (10 where it says nothing), `VIEWER_MONKEY_SEED` with
-//! which events (1).
+//! `VIEWER_MONKEY_SECONDS` sets the duration (10 by default), `VIEWER_MONKEY_SEED` the sequence of
+//! events (1 by default).
 
 #[path = "window/common.rs"]
 mod common;
@@ -53,26 +52,26 @@ const KEYS: [Key; 33] = [
     Key::R,
 ];
 
-/// More memory than this over that after the first tenth is a leak, in bytes.
+/// Growth of memory after the first tenth of the test that counts as a leak, in bytes.
 const MOST_GROWTH: u64 = 400 << 20;
 
-/// More memory than this at any time is a drawing without end, in bytes.
+/// Memory that is never exceeded unless a drawing grows without bound, in bytes.
 const MOST_MEMORY: u64 = 2 << 30;
 
-fn setting(name: &str, otherwise: u64) -> u64 {
+fn setting(name: &str, default: u64) -> u64 {
     let text = std::env::var(name).ok();
-    text.map_or(otherwise, |text| text.parse().expect("a whole number"))
+    text.map_or(default, |text| text.parse().expect("a whole number"))
 }
 
 #[test]
-fn random_events_do_not_break_the_window() {
+fn random_events_do_not_crash_the_window() {
     let limit = Duration::from_secs(setting("VIEWER_MONKEY_SECONDS", 10));
     let seed = setting("VIEWER_MONKEY_SEED", 1);
     let folder = tempfile::tempdir().unwrap();
-    // What is written by chance shall not be written into the project.
+    // Files that are written by chance must not end up in the project.
     std::env::set_current_dir(folder.path()).unwrap();
     let mut random = StdRng::seed_from_u64(seed);
-    let settings = || Settings::of(Some(folder.path().join("settings/state.json")));
+    let settings = || Settings::load(Some(folder.path().join("settings/state.json")));
     let mut window = window_with([1280.0, 800.0], NoDialogs, settings());
     let scan = folder.path().join("scan.csv");
     std::fs::write(&scan, z307()).unwrap();
@@ -86,7 +85,7 @@ fn random_events_do_not_break_the_window() {
             std::thread::sleep(Duration::from_millis(1));
         }
         if events.is_multiple_of(200) {
-            keep_it_alive(&mut window, &mut random);
+            limit_samples(&mut window, &mut random);
             let now = memory().unwrap_or(0);
             assert!(now < MOST_MEMORY, "{} MiB after {events} events", now >> 20);
         }
@@ -107,7 +106,7 @@ fn random_events_do_not_break_the_window() {
     );
     assert!(grown < MOST_GROWTH, "{} MiB", grown >> 20);
     assert!(events > 100);
-    // What was kept is taken up again.
+    // The saved settings are valid.
     let again = window_with([1280.0, 800.0], NoDialogs, settings());
     assert!(again.state().state.errors().is_empty());
 }
@@ -193,7 +192,7 @@ fn drop_something(window: &mut Window, random: &mut StdRng, scan: &Path) {
     }
     let mut text = z307();
     if random.random_bool(0.5) {
-        // Somewhere in it something else stands.
+        // The content is damaged at a random position.
         let at = random.random_range(0..text.len());
         if text.is_char_boundary(at) {
             text.insert_str(
@@ -205,8 +204,8 @@ fn drop_something(window: &mut Window, random: &mut StdRng, scan: &Path) {
     drop_file(window, "dropped.csv", &text);
 }
 
-/// Few samples, so that frames stay short, and one at least, so that something can break.
-fn keep_it_alive(window: &mut Window, random: &mut StdRng) {
+/// Leaves between one and six samples, so that frames are short but not empty.
+fn limit_samples(window: &mut Window, random: &mut StdRng) {
     let state = &mut window.state_mut().state;
     while state.samples.len() > 6 {
         let id = state.samples[random.random_range(0..state.samples.len())].id;
@@ -221,7 +220,7 @@ fn keep_it_alive(window: &mut Window, random: &mut StdRng) {
     window.step();
 }
 
-/// The memory of the process in bytes, where the system says it.
+/// The memory of the process in bytes, if the system reports it.
 fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;

@@ -1,4 +1,4 @@
-//! The viewer's own dialogs: the path of a file, and what this is.
+//! The dialogs of the viewer: file paths, and the version with the keys.
 
 use egui::{Context, Grid, Id, Key, Modal, TextEdit, Ui};
 
@@ -7,7 +7,7 @@ use crate::shortcuts::MENUS;
 use crate::state::State;
 use crate::state::interface::Dialog;
 
-/// Draws the dialog that is open. `browse` says whether the system has dialogs for files.
+/// Draws the open dialog. `browse` is whether the system has file dialogs.
 pub fn show(ctx: &Context, state: &State, browse: bool, intents: &mut Vec<Intent>) {
     let Some(dialog) = &state.dialog else {
         return;
@@ -17,11 +17,14 @@ pub fn show(ctx: &Context, state: &State, browse: bool, intents: &mut Vec<Intent
             ui.heading("Open a scan, or a fit as JSON");
             show_path(ui, path, "Open", browse, intents);
         }
-        Dialog::Export { what, path } => {
-            ui.heading(format!("Write {}", what.name()));
-            show_path(ui, path, "Write", browse, intents);
+        Dialog::Export { kind, path } => {
+            ui.heading(format!("Save {}", kind.name()));
+            show_path(ui, path, "Save", browse, intents);
             if std::path::Path::new(path.trim()).exists() {
-                ui.colored_label(ui.visuals().warn_fg_color, "This file will be replaced.");
+                ui.colored_label(
+                    ui.visuals().warn_fg_color,
+                    "This file exists and will be replaced.",
+                );
             }
         }
         Dialog::About => show_about(ui, intents),
@@ -33,7 +36,7 @@ pub fn show(ctx: &Context, state: &State, browse: bool, intents: &mut Vec<Intent
 
 fn show_path(ui: &mut Ui, path: &str, verb: &str, browse: bool, intents: &mut Vec<Intent>) {
     let mut text = path.to_owned();
-    let label = ui.label("Path of the file");
+    let label = ui.label("File path");
     let edit = TextEdit::singleline(&mut text).desired_width(460.0);
     let response = ui.add(edit).labelled_by(label.id);
     let entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
@@ -44,12 +47,12 @@ fn show_path(ui: &mut Ui, path: &str, verb: &str, browse: bool, intents: &mut Ve
         intents.push(Intent::Path(text.clone()));
     }
     ui.horizontal(|ui| {
-        let some = !text.trim().is_empty();
-        let pressed = ui.add_enabled(some, egui::Button::new(verb)).clicked();
-        if pressed || (entered && some) {
+        let has_path = !text.trim().is_empty();
+        let pressed = ui.add_enabled(has_path, egui::Button::new(verb)).clicked();
+        if pressed || (entered && has_path) {
             intents.push(Intent::Confirm);
         }
-        let hint = "no dialog for files was found on this system";
+        let hint = "No file dialog of the system is available";
         let button = ui.add_enabled(browse, egui::Button::new("Browse..."));
         if button.on_disabled_hover_text(hint).clicked() {
             intents.push(Intent::Browse);
@@ -61,38 +64,18 @@ fn show_path(ui: &mut Ui, path: &str, verb: &str, browse: bool, intents: &mut Ve
 }
 
 fn show_about(ui: &mut Ui, intents: &mut Vec<Intent>) {
-    ui.heading("Theory against experiment for each incidence angle");
+    ui.heading("Theory and measurement for each incidence angle");
     ui.label(
         "The three-parameter BRDF of Li, Yan and Wu (Acta Optica Sinica 22(7), 769, 2002), fitted \
          in two stages to goniometer scans.",
     );
     ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
     ui.separator();
-    let commands = MENUS.iter().flat_map(|menu| menu.entries.iter().flatten());
-    let keys: Vec<(String, &str)> = commands
-        .filter_map(|command| {
-            let key = ui.ctx().format_shortcut(&command.shortcut()?);
-            Some((key, command.name()))
-        })
-        .chain([
-            ("Drag".to_owned(), "Pan the plot"),
-            ("Ctrl+scroll".to_owned(), "Zoom the plot"),
-            ("Right drag".to_owned(), "Zoom into a rectangle"),
-            (
-                "Double click".to_owned(),
-                "Reset a slider, or the zoom of a plot",
-            ),
-            (
-                "Ctrl+plus, Ctrl+minus".to_owned(),
-                "Everything larger, smaller",
-            ),
-        ])
-        .collect();
     Grid::new("keys")
         .num_columns(4)
         .striped(true)
         .show(ui, |ui| {
-            for pair in keys.chunks(2) {
+            for pair in keys(ui.ctx()).chunks(2) {
                 for (key, name) in pair {
                     ui.strong(key);
                     ui.label(*name);
@@ -103,4 +86,22 @@ fn show_about(ui: &mut Ui, intents: &mut Vec<Intent>) {
     if ui.button("Close").clicked() {
         intents.push(Intent::CloseDialog);
     }
+}
+
+/// All keys and pointer actions with their effects.
+fn keys(ctx: &Context) -> Vec<(String, &'static str)> {
+    let commands = MENUS.iter().flat_map(|menu| menu.entries.iter().flatten());
+    let of_commands = commands.filter_map(|command| {
+        let key = ctx.format_shortcut(&command.shortcut()?);
+        Some((key, command.name()))
+    });
+    let others = [
+        ("Drag", "Pan the plot"),
+        ("Ctrl+scroll", "Zoom the plot"),
+        ("Right drag", "Zoom into a rectangle"),
+        ("Double click", "Reset a slider, or the zoom of a plot"),
+        ("Ctrl+plus, Ctrl+minus", "Zoom the window"),
+    ];
+    let others = others.map(|(key, name)| (key.to_owned(), name));
+    of_commands.chain(others).collect()
 }

@@ -4,11 +4,11 @@ use egui::{Align2, Color32, Context, Id, LayerId, Order, TextStyle};
 
 use crate::intent::Intent;
 
-/// What was dropped. A file of the system is read where it is; what has no place of its own comes
-/// with its bytes.
+/// The intents for dropped files. A file with an absolute path is read by the worker; others come
+/// with their content. While files are dragged over the window, a hint is shown.
 pub fn intents(ctx: &Context) -> Vec<Intent> {
     if ctx.input(|input| !input.raw.hovered_files.is_empty()) {
-        say_that_it_can_be_dropped(ctx);
+        show_hint(ctx);
     }
     let dropped = ctx.input(|input| input.raw.dropped_files.clone());
     let intents = dropped.iter().map(|file| {
@@ -23,7 +23,7 @@ pub fn intents(ctx: &Context) -> Vec<Intent> {
     intents.collect()
 }
 
-fn say_that_it_can_be_dropped(ctx: &Context) {
+fn show_hint(ctx: &Context) {
     let layer = LayerId::new(Order::Foreground, Id::unique("drop"));
     let painter = ctx.layer_painter(layer);
     let window = ctx.content_rect();

@@ -1,4 +1,4 @@
-//! The fit: its buttons, its settings, and how far it is.
+//! The fit: buttons, progress and settings.
 
 use brdf_fit::Method;
 use brdf_fit::fit::robust::Loss;
@@ -6,18 +6,36 @@ use egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, ProgressBar, Ui}
 
 use crate::intent::{Command, Intent};
 use crate::state::State;
-use crate::state::fitting::{FitChoice, FitRun, Progress, ReadingWeights, Scope, Stages, Start};
+use crate::state::fit_run::{FitRun, Progress};
+use crate::state::fit_settings::{FitSettings, ReadingWeights, Scope, Stages, Start};
 use crate::widgets::{choose, named};
 
-/// Draws the fit.
+/// Draws the section of the fit.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.strong("Fit");
-    let mut choice = state.choice.clone();
+    let mut settings = state.fit_settings.clone();
     ui.horizontal(|ui| {
         ui.label("Start from");
-        ui.radio_value(&mut choice.start, Start::Paper, "the paper's values");
-        ui.radio_value(&mut choice.start, Start::Sliders, "the sliders");
+        ui.radio_value(&mut settings.start, Start::Paper, "paper's values");
+        ui.radio_value(&mut settings.start, Start::Current, "current values");
     });
+    show_buttons(ui, state, intents);
+    if let Some(run) = &state.fit_run {
+        if run.is_running() {
+            show_progress(ui, run, intents);
+        } else {
+            ui.label(result_text(run));
+        }
+    }
+    CollapsingHeader::new("Fit settings")
+        .default_open(false)
+        .show(ui, |ui| show_settings(ui, &mut settings));
+    if settings != state.fit_settings {
+        intents.push(Intent::FitSettings(settings));
+    }
+}
+
+fn show_buttons(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.horizontal(|ui| {
         let enabled = state.is_enabled(Command::Fit);
         for (name, stages) in [
@@ -32,77 +50,54 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         let enabled = state.is_enabled(Command::FitAll);
         let all = ui.add_enabled(enabled, Button::new("Fit all"));
         if all.on_hover_text(Command::FitAll.name()).clicked() {
-            intents.push(Intent::Do(Command::FitAll));
+            intents.push(Intent::Command(Command::FitAll));
         }
     });
-    if let Some(run) = &state.run {
-        show_run(ui, run, intents);
-    }
-    CollapsingHeader::new("Settings of the fit")
-        .default_open(false)
-        .show(ui, |ui| show_settings(ui, &mut choice));
-    if choice != state.choice {
-        intents.push(Intent::FitChoice(choice));
+}
+
+fn result_text(run: &FitRun) -> String {
+    let (fitted, ended, count) = (run.fitted_count(), run.ended_count(), run.fit_count());
+    match run.progress {
+        Progress::Cancelled => format!("cancelled: {ended} of {count} completed"),
+        _ if run.errors.is_empty() => format!("{fitted} of {count} fitted"),
+        _ => format!("{fitted} of {count} fitted, {} failed", run.errors.len()),
     }
 }
 
-fn show_run(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
-    if !run.is_running() {
-        let words = match run.progress {
-            Progress::Cancelled => format!("cancelled: {} of {} were done", run.done(), run.jobs()),
-            _ if run.failed.is_empty() => format!("{} of {} fitted", run.fitted(), run.jobs()),
-            _ => {
-                let failed = run.failed.len();
-                format!("{} of {} fitted, {failed} failed", run.fitted(), run.jobs())
-            }
-        };
-        ui.label(words);
-        return;
-    }
+fn show_progress(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
     ui.horizontal(|ui| {
         let cancelling = run.progress == Progress::Cancelling;
         if ui.add_enabled(!cancelling, Button::new("Cancel")).clicked() {
-            intents.push(Intent::Do(Command::Cancel));
+            intents.push(Intent::Command(Command::Cancel));
         }
+        let (ended, count) = (run.ended_count(), run.fit_count());
         let phase = run
             .phase
             .map_or_else(String::new, |phase| phase.to_string());
         let iteration = run.points.last().map_or(0, |point| point.iteration);
-        let words = format!(
-            "{} of {}: {phase}, iteration {iteration}",
-            run.done(),
-            run.jobs()
-        );
-        let part = run.done() as f32 / run.jobs().max(1) as f32;
-        ui.add(ProgressBar::new(part).text(words));
+        let text = format!("{ended} of {count}: {phase}, iteration {iteration}");
+        let fraction = ended as f32 / count.max(1) as f32;
+        ui.add(ProgressBar::new(fraction).text(text));
     });
 }
 
-fn show_settings(ui: &mut Ui, choice: &mut FitChoice) {
+fn show_settings(ui: &mut Ui, settings: &mut FitSettings) {
     Grid::new("settings")
         .num_columns(2)
         .spacing([8.0, 4.0])
         .show(ui, |ui| {
-            show_method(ui, "Method of stage 1", &mut choice.stage1);
-            show_method(ui, "Method of stage 2", &mut choice.stage2);
-            let label = ui.label("Stage 1 up to");
-            ui.add(
-                DragValue::new(&mut choice.limit_deg)
-                    .range(0.0..=90.0)
-                    .suffix("°"),
-            )
-            .labelled_by(label.id);
+            show_method(ui, "Stage 1 method", &mut settings.stage1);
+            show_method(ui, "Stage 2 method", &mut settings.stage2);
+            let label = ui.label("Largest psi in stage 1");
+            let limit = DragValue::new(&mut settings.stage1_limit_deg);
+            ui.add(limit.range(0.0..=90.0).suffix("°"))
+                .labelled_by(label.id);
             ui.end_row();
-            show_weights(ui, &mut choice.weights);
-            show_loss(ui, &mut choice.robust);
-            ui.checkbox(&mut choice.energy, "rho <= 1 up to");
-            let limit = &mut choice.energy_limit_deg;
-            let limit = DragValue::new(limit).range(0.0..=89.9).suffix("°");
-            let response = ui.add_enabled(choice.energy, limit);
-            named(response, egui::Role::SpinButton, "limit of rho <= 1");
-            ui.end_row();
+            show_weights(ui, &mut settings.weights);
+            show_loss(ui, &mut settings.loss);
+            show_energy(ui, settings);
         });
-    ui.checkbox(&mut choice.compare, "Fit GGX and Beckmann beside it");
+    ui.checkbox(&mut settings.compare_models, "Also fit GGX and Beckmann");
 }
 
 fn show_method(ui: &mut Ui, name: &str, method: &mut Method) {
@@ -121,7 +116,7 @@ fn show_weights(ui: &mut Ui, weights: &mut ReadingWeights) {
         ReadingWeights::Sigma,
         ReadingWeights::SolidAngle,
     ];
-    show_choice(ui, "Weights of readings", weights, &all, name);
+    show_choice(ui, "Reading weights", weights, &all, name);
 }
 
 fn show_loss(ui: &mut Ui, loss: &mut Option<Loss>) {
@@ -132,16 +127,25 @@ fn show_loss(ui: &mut Ui, loss: &mut Option<Loss>) {
     show_choice(ui, "Loss", loss, &all, name);
 }
 
-/// A row of the settings: a name, and a box from which one of some values is chosen.
+fn show_energy(ui: &mut Ui, settings: &mut FitSettings) {
+    ui.checkbox(&mut settings.constrain_energy, "Enforce rho <= 1 up to");
+    let limit = DragValue::new(&mut settings.energy_limit_deg);
+    let limit = limit.range(0.0..=89.9).suffix("°");
+    let response = ui.add_enabled(settings.constrain_energy, limit);
+    named(response, egui::Role::SpinButton, "limit of rho <= 1");
+    ui.end_row();
+}
+
+/// A row of the settings: a label and a combo box.
 fn show_choice<T: PartialEq + Clone>(
     ui: &mut Ui,
-    name: &str,
+    label: &str,
     value: &mut T,
     all: &[T],
-    words: impl Fn(&T) -> String,
+    name: impl Fn(&T) -> String,
 ) {
-    let label = ui.label(name);
-    let combo = ComboBox::from_id_salt(name).width(150.0);
-    choose(ui, combo, value, all.iter().cloned(), words).labelled_by(label.id);
+    let response = ui.label(label);
+    let combo = ComboBox::from_id_salt(label).width(150.0);
+    choose(ui, combo, value, all.iter().cloned(), name).labelled_by(response.id);
     ui.end_row();
 }

@@ -1,37 +1,39 @@
-//! The menus, with the key of each command.
+//! The menu bar, with the key of each command.
 
 use brdf_fit::scan::{Convention, Side};
 use egui::{Button, MenuBar, Panel, Ui};
 
 use crate::intent::{Command, Intent};
-use crate::shortcuts::MENUS;
+use crate::shortcuts::{MENUS, Menu};
 use crate::state::{State, built_in};
 
-/// Draws the menus.
+/// Draws the menu bar.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     Panel::top("menu").show(ui, |ui| {
         MenuBar::new().ui(ui, |ui| {
             for (i, menu) in MENUS.iter().enumerate() {
-                ui.menu_button(menu.title, |ui| {
-                    for entry in menu.entries {
-                        match entry {
-                            Some(command) => show_command(ui, state, *command, intents),
-                            None => {
-                                ui.separator();
-                            }
-                        }
-                        if *entry == Some(Command::OpenPath) {
-                            show_recent(ui, state, intents);
-                            show_convention(ui, state.convention, intents);
-                        }
-                    }
-                });
+                ui.menu_button(menu.title, |ui| show_entries(ui, state, menu, intents));
                 if i == 0 {
                     ui.menu_button("Built-in", |ui| show_built_in(ui, intents));
                 }
             }
         });
     });
+}
+
+fn show_entries(ui: &mut Ui, state: &State, menu: &Menu, intents: &mut Vec<Intent>) {
+    for entry in menu.entries {
+        match entry {
+            Some(command) => show_command(ui, state, *command, intents),
+            None => {
+                ui.separator();
+            }
+        }
+        if *entry == Some(Command::OpenPath) {
+            show_recent(ui, state, intents);
+            show_convention(ui, state.convention, intents);
+        }
+    }
 }
 
 fn show_command(ui: &mut Ui, state: &State, command: Command, intents: &mut Vec<Intent>) {
@@ -43,7 +45,7 @@ fn show_command(ui: &mut Ui, state: &State, command: Command, intents: &mut Vec<
         button = button.selected(on);
     }
     if ui.add_enabled(state.is_enabled(command), button).clicked() {
-        intents.push(Intent::Do(command));
+        intents.push(Intent::Command(command));
         ui.close();
     }
 }
@@ -61,34 +63,32 @@ fn show_recent(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     });
 }
 
-/// Which way the angles of the next files go.
+/// The angular convention in which files are read from now on.
 fn show_convention(ui: &mut Ui, convention: Convention, intents: &mut Vec<Intent>) {
     let sides = [
-        ("the source's side", Side::Source),
+        ("the source side", Side::Source),
         ("the forward side", Side::Forward),
     ];
     ui.menu_button("Angles in files", |ui| {
-        for (words, side) in sides {
-            let at = Convention {
+        for (name, side) in sides {
+            let choice = Convention {
                 theta_positive: side,
                 ..convention
             };
-            let text = format!("theta positive on {words}");
-            if ui.radio(at == convention, text).clicked() {
-                intents.push(Intent::Convention(at));
+            let text = format!("theta positive on {name}");
+            if ui.radio(choice == convention, text).clicked() {
+                intents.push(Intent::Convention(choice));
             }
         }
         ui.separator();
-        for (words, side) in sides {
-            let at = Convention {
+        for (name, side) in sides {
+            let choice = Convention {
                 phi_zero: side,
                 ..convention
             };
-            if ui
-                .radio(at == convention, format!("phi zero on {words}"))
-                .clicked()
-            {
-                intents.push(Intent::Convention(at));
+            let text = format!("phi zero on {name}");
+            if ui.radio(choice == convention, text).clicked() {
+                intents.push(Intent::Convention(choice));
             }
         }
     });
@@ -99,7 +99,7 @@ fn show_built_in(ui: &mut Ui, intents: &mut Vec<Intent>) {
     for (i, entry) in built_in::entries().into_iter().enumerate() {
         if measured.replace(entry.measured) != Some(entry.measured) {
             ui.weak(if entry.measured {
-                "Measured"
+                "Measured samples"
             } else {
                 "Theory with the parameters of the paper"
             });

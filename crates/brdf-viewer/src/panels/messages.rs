@@ -1,4 +1,4 @@
-//! What the user is told, above the plot, until it is taken away.
+//! Errors and notes above the plot, until they are dismissed.
 
 use egui::{Color32, Frame, Panel, RichText, ScrollArea, Ui};
 
@@ -6,10 +6,10 @@ use crate::intent::Intent;
 use crate::state::State;
 use crate::state::interface::{Message, Severity};
 
-/// Messages take no more than this of the height, in points.
+/// The largest height of all messages, in points.
 const MOST_HEIGHT: f32 = 110.0;
 
-/// Draws the messages, the latest first; nothing where there are none.
+/// Draws the messages, the latest first. Without messages there is no panel.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     if state.messages.is_empty() {
         return;
@@ -28,7 +28,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     });
 }
 
-/// Draws one; whether it shall go.
+/// Draws a message, and returns whether it is dismissed.
 fn show_message(ui: &mut Ui, message: &Message) -> bool {
     let (title, colour) = match message.severity {
         Severity::Error => ("Error", ui.visuals().error_fg_color),
@@ -39,10 +39,10 @@ fn show_message(ui: &mut Ui, message: &Message) -> bool {
         .fill(Color32::TRANSPARENT);
     let shown = frame.show(ui, |ui| {
         ui.horizontal_top(|ui| {
-            let gone = ui.button("Dismiss").clicked();
+            let dismissed = ui.button("Dismiss").clicked();
             ui.label(RichText::new(title).color(colour).strong());
             ui.add(egui::Label::new(&message.text).wrap());
-            gone
+            dismissed
         })
     });
     shown.inner.inner

@@ -1,4 +1,4 @@
-//! The parts of the window, a file each: they draw the state and answer with intents.
+//! The panels of the window, one per file. They draw the state and answer with intents.
 
 pub mod dialog;
 pub mod drop;

@@ -1,4 +1,5 @@
-//! The model and its parameters at the right, and below them what follows and the fit.
+//! The panel at the right: the model with its parameters, and E and the reflectances that follow
+//! from them.
 
 use brdf_core::N_DOMAIN;
 use brdf_fit::format::digits;
@@ -7,51 +8,50 @@ use egui::{
     ComboBox, DragValue, Grid, Id, Panel, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
 };
 
-use super::fit;
-use crate::axis::round_number_above;
 use crate::intent::{Command, Intent};
+use crate::plot::ticks::round_up;
 use crate::state::State;
-use crate::state::fitting::Scope;
-use crate::state::sample::{Knobs, Sample};
+use crate::state::fit_settings::Scope;
+use crate::state::parameters::EditedParameters;
+use crate::state::sample::Sample;
 use crate::widgets::{choose, named};
 
-/// Draws the panel. What is turned here is applied before what follows from it is drawn; whether
-/// anything was turned.
-pub fn show(ui: &mut Ui, state: &mut State) -> bool {
-    let mut turned = false;
+/// Draws the panel around its sections: [`show`], [`show_outcome`] and [`fit`](super::fit).
+pub fn show_panel(ui: &mut Ui, sections: impl FnOnce(&mut Ui)) {
     let panel = Panel::right("parameters")
         .default_size(325.0)
         .size_range(300.0..=460.0);
     panel.show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-            let mut intents = Vec::new();
-            ui.add_space(4.0);
-            ui.strong("Model");
-            match state.active_sample() {
-                Some(sample) => show_model(ui, state, sample, &mut intents),
-                None => {
-                    ui.label("No sample is open.");
-                }
-            }
-            turned = !intents.is_empty();
-            for intent in intents.drain(..) {
-                state.apply(intent);
-            }
-            state.refresh();
-            show_outcome(ui, state);
-            ui.separator();
-            fit::show(ui, state, &mut intents);
-            for intent in intents.drain(..) {
-                state.apply(intent);
-            }
-        });
+        ScrollArea::vertical().auto_shrink(false).show(ui, sections);
     });
-    turned
 }
 
-fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {
-    let knobs = sample.scan().knobs;
-    let mut model = knobs.model;
+/// Draws the model and its parameters.
+pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    ui.add_space(4.0);
+    ui.strong("Model");
+    let Some(sample) = state.active_sample() else {
+        ui.label("No sample is open.");
+        return;
+    };
+    show_model(ui, sample, intents);
+    let scan = sample.scan();
+    let fitted = scan.fitted_parameters();
+    Grid::new("parameters")
+        .num_columns(5)
+        .spacing([6.0, 5.0])
+        .show(ui, |ui| {
+            for parameter in scan.parameters.model_parameters() {
+                show_parameter(ui, parameter, &scan.parameters, &fitted, intents);
+                ui.end_row();
+            }
+        });
+    show_buttons(ui, state, intents);
+}
+
+fn show_model(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
+    let current = sample.scan().parameters.model;
+    let mut model = current;
     let combo = ComboBox::from_id_salt("model")
         .width(280.0)
         .height(400.0)
@@ -59,20 +59,20 @@ fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Int
     let text = |model: &Model| format!("{model}: {}", model.description());
     let shown = choose(ui, combo, &mut model, Model::ALL, text);
     named(shown, Role::ComboBox, "model");
-    if model != knobs.model {
+    if model != current {
         intents.push(Intent::Model(model, Scope::Wavelength));
     }
-    show_model_for_all(ui, sample, intents);
-    let fitted = sample.scan().fitted_knobs();
-    Grid::new("parameters")
-        .num_columns(5)
-        .spacing([6.0, 5.0])
-        .show(ui, |ui| {
-            for parameter in knobs.parameters() {
-                show_parameter(ui, parameter, &knobs, &fitted, intents);
-                ui.end_row();
-            }
-        });
+    if sample.scans.len() > 1 {
+        let mut scans = sample.scans.iter();
+        let differs = scans.any(|scan| scan.parameters.model != current);
+        let button = egui::Button::new("Use this model for all wavelengths").small();
+        if ui.add_enabled(differs, button).clicked() {
+            intents.push(Intent::Model(current, Scope::Sample));
+        }
+    }
+}
+
+fn show_buttons(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.horizontal(|ui| {
         for command in [Command::Undo, Command::Redo, Command::ResetAll] {
             let name = if command == Command::ResetAll {
@@ -81,85 +81,82 @@ fn show_model(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Int
                 command.name()
             };
             let enabled = state.is_enabled(command);
-            if ui.add_enabled(enabled, egui::Button::new(name)).clicked() {
-                intents.push(Intent::Do(command));
+            let button = ui.add_enabled(enabled, egui::Button::new(name));
+            if button.clicked() {
+                intents.push(Intent::Command(command));
             }
         }
     });
 }
 
-/// The model for the other wavelengths as well, where there are any.
-fn show_model_for_all(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
-    if sample.scans.len() < 2 {
-        return;
-    }
-    let model = sample.scan().knobs.model;
-    let differs = sample.scans.iter().any(|scan| scan.knobs.model != model);
-    let button = egui::Button::new("This model for all wavelengths").small();
-    if ui.add_enabled(differs, button).clicked() {
-        intents.push(Intent::Model(model, Scope::Sample));
-    }
-}
-
-/// A row: name, slider, number, back to the fit, hold.
+/// A row: label, slider, number box, reset button and check box.
 fn show_parameter(
     ui: &mut Ui,
     parameter: Parameter,
-    knobs: &Knobs,
-    fitted: &Knobs,
+    current: &EditedParameters,
+    fitted: &EditedParameters,
     intents: &mut Vec<Intent>,
 ) {
-    let value = parameter.of(&knobs.at);
-    let reset = parameter.of(&fitted.at);
+    let value = parameter.of(&current.values);
+    let reset = parameter.of(&fitted.values);
     let label = ui.add(egui::Label::new(parameter.to_string()).sense(Sense::click()));
     let label = label.on_hover_text(meaning(parameter));
 
-    let mut slid = value;
-    let slider = slider(parameter, &mut slid, reset).show_value(false);
+    let mut slider_value = value;
+    let slider = slider(parameter, &mut slider_value, reset).show_value(false);
     let slider = ui.add(slider).labelled_by(label.id);
-    // A slider does not feel clicks: this lies over it and does.
-    let over = ui.interact(
+    // A slider does not sense clicks, so that an area on top of it senses double clicks.
+    let area = ui.interact(
         slider.rect,
         Id::unique(("reset", parameter as u8)),
         Sense::click(),
     );
-    let over = named(over, Role::Unknown, &format!("slider of {parameter}"));
-    let mut typed = value;
-    number(ui, parameter, &mut typed).labelled_by(label.id);
+    let area = named(area, Role::Unknown, &format!("slider of {parameter}"));
+    let mut typed_value = value;
+    number_box(ui, parameter, &mut typed_value).labelled_by(label.id);
 
     let button = ui.add_enabled(value != reset, egui::Button::new("reset").small());
     let name = format!("reset {parameter}");
     let button = named(button, Role::Button, &name);
     let button = button.on_hover_text(format!("{name} to {}", digits(reset)));
-    let twice = over.double_clicked() || label.double_clicked();
+    let double_clicked = area.double_clicked() || label.double_clicked();
 
-    if twice || button.clicked() {
+    if double_clicked || button.clicked() {
         intents.push(Intent::Reset(parameter));
     } else {
-        let turned = if slider.changed() { slid } else { typed };
-        if turned != value && turned.is_finite() {
-            let mut knobs = *knobs;
-            parameter.set(&mut knobs.at, turned);
-            intents.push(Intent::Turn(knobs));
+        let new = if slider.changed() {
+            slider_value
+        } else {
+            typed_value
+        };
+        if new != value && new.is_finite() {
+            let mut changed = *current;
+            parameter.set(&mut changed.values, new);
+            intents.push(Intent::SetParameters(changed));
         }
     }
-    show_hold(ui, parameter, knobs, intents);
+    show_fix(ui, parameter, current, intents);
 }
 
-fn show_hold(ui: &mut Ui, parameter: Parameter, knobs: &Knobs, intents: &mut Vec<Intent>) {
-    if !knobs.model.frees(parameter) {
+fn show_fix(
+    ui: &mut Ui,
+    parameter: Parameter,
+    current: &EditedParameters,
+    intents: &mut Vec<Intent>,
+) {
+    if !current.model.frees(parameter) {
         ui.weak("given");
         return;
     }
-    let mut held = knobs.holds(parameter);
-    let response = ui.checkbox(&mut held, "hold");
-    let name = format!("hold {parameter}");
-    response.widget_info(|| egui::WidgetInfo::selected(Role::CheckBox, true, held, &name));
-    let words = format!("a fit leaves {parameter} as it is");
-    if response.on_hover_text(words).changed() {
-        let mut knobs = *knobs;
-        knobs.fixed[parameter as usize] = held;
-        intents.push(Intent::Turn(knobs));
+    let mut fixed = current.is_fixed(parameter);
+    let response = ui.checkbox(&mut fixed, "fix");
+    let name = format!("fix {parameter}");
+    response.widget_info(|| egui::WidgetInfo::selected(Role::CheckBox, true, fixed, &name));
+    let hint = format!("fit the other parameters, with {parameter} fixed at its value");
+    if response.on_hover_text(hint).changed() {
+        let mut changed = *current;
+        changed.fixed[parameter as usize] = fixed;
+        intents.push(Intent::SetParameters(changed));
     }
 }
 
@@ -173,7 +170,7 @@ fn meaning(parameter: Parameter) -> &'static str {
     }
 }
 
-/// What a number box takes.
+/// The range of a number box.
 fn range(parameter: Parameter) -> (f64, f64) {
     match parameter {
         Parameter::K2 | Parameter::Kd => (0.0, 1e30),
@@ -182,11 +179,11 @@ fn range(parameter: Parameter) -> (f64, f64) {
     }
 }
 
-/// The part of the range that matters on coatings; a number box takes more.
+/// A slider over the usual values of coatings. Its number box has a wider range.
 fn slider(parameter: Parameter, value: &mut f64, fitted: f64) -> Slider<'_> {
     let slider = match parameter {
         Parameter::K2 | Parameter::Kd => {
-            let top = round_number_above(2.0 * fitted.max(0.5 * *value).max(1e-3));
+            let top = round_up(2.0 * fitted.max(0.5 * *value).max(1e-3));
             Slider::new(value, 0.0..=top)
         }
         Parameter::K1 => Slider::new(value, 1e-4..=10.0).logarithmic(true),
@@ -196,49 +193,49 @@ fn slider(parameter: Parameter, value: &mut f64, fitted: f64) -> Slider<'_> {
     slider.clamping(SliderClamping::Edits).smart_aim(false)
 }
 
-fn number(ui: &mut Ui, parameter: Parameter, value: &mut f64) -> egui::Response {
+fn number_box(ui: &mut Ui, parameter: Parameter, value: &mut f64) -> egui::Response {
     let (lowest, highest) = range(parameter);
     let before = *value;
     let speed = (before.abs() * 0.005).max(1e-6);
-    let box_ = DragValue::new(value)
+    let number = DragValue::new(value)
         .range(lowest..=highest)
         .clamp_existing_to_range(false)
         .speed(speed)
         .update_while_editing(false)
         .custom_formatter(|x, _| digits(x));
-    let response = ui.add_sized([70.0, ui.spacing().interact_size.y], box_);
-    // A box that is left without a change keeps what its digits do not show.
+    let response = ui.add_sized([70.0, ui.spacing().interact_size.y], number);
+    // A box that is left without an edit must not round the value to the digits shown.
     if digits(*value) == digits(before) {
         *value = before;
     }
     response
 }
 
-/// E and the reflectance of the parameters as they are.
-fn show_outcome(ui: &mut Ui, state: &State) {
+/// Draws E and the reflectances of the current parameters.
+pub fn show_outcome(ui: &mut Ui, state: &State) {
     let Some(sample) = state.active_sample() else {
         return;
     };
     let id = sample.scan_id();
     ui.add_space(4.0);
-    match state.shown.errors(id) {
+    match state.derived.errors(id) {
         Some(Ok(errors)) => {
             ui.strong(format!("E = {} %", digits(errors.e_percent)));
         }
         Some(Err(reason)) => {
-            ui.label(format!("no E: {reason}"));
+            ui.label(format!("E is not available: {reason}"));
         }
         None => {}
     }
-    let rho = state.shown.reflectance(id);
-    let words: Vec<String> = rho
+    let rho = state.derived.reflectance(id);
+    let values: Vec<String> = rho
         .iter()
         .filter(|[psi_deg, _]| [0.0, 45.0, 60.0, 85.0].contains(psi_deg))
         .map(|[psi_deg, rho]| format!("{rho:.3} at {psi_deg}°"))
         .collect();
-    ui.label(format!("Hemispherical reflectance {}", words.join(", ")));
+    ui.label(format!("Hemispherical reflectance {}", values.join(", ")));
     if let Some([psi_deg, _]) = rho.iter().find(|[_, rho]| *rho > 1.0) {
-        let words = format!("more light leaves than arrives at {psi_deg}° and beyond");
-        ui.colored_label(ui.visuals().warn_fg_color, words);
+        let text = format!("energy is not conserved: the reflectance exceeds 1 from {psi_deg}°");
+        ui.colored_label(ui.visuals().warn_fg_color, text);
     }
 }

@@ -1,20 +1,20 @@
-//! The results below: the tables of the command line, and what can be plotted of a fit.
+//! The panel at the bottom: the tables that the command line prints, and plots of the fit.
 
 use brdf_fit::fit::grid_search::ProfilePoint;
 use brdf_fit::progress::Phase;
 use egui::{Color32, Panel, Rangef, RichText, Role, ScrollArea, Ui};
-use egui_plot::{AxisHints, Legend, Line, Plot, PlotPoints, Points, VLine};
+use egui_plot::{AxisHints, HLine, Legend, Line, Plot, PlotPoints, Points, VLine};
 
-use crate::axis::Axis;
 use crate::intent::Intent;
+use crate::plot::axis::Axis;
 use crate::state::State;
-use crate::state::fitting::Point;
+use crate::state::convergence::ConvergencePoint;
 use crate::state::interface::ResultTab;
 use crate::state::sample::{Sample, Scan};
 use crate::theme;
 use crate::widgets::named;
 
-/// Draws the results.
+/// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     let height = ui.available_height();
     let most = (height * 0.6).max(120.0);
@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         .resizable(true)
         .default_size((0.25 * height).clamp(110.0, 240.0));
     panel.size_range(90.0..=most).show(ui, |ui| {
-        // The height is the user's, not that of the words in it.
+        // The height is set by the user and does not depend on the content.
         ui.take_available_height();
         ui.horizontal(|ui| {
             for tab in ResultTab::ALL {
@@ -37,29 +37,30 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
             return;
         };
         match state.interface.tab {
-            ResultTab::Tables => show_tables(ui, sample),
-            ResultTab::Convergence => show_convergence(ui, state, sample),
+            ResultTab::Tables => show_tables(ui, sample.scan()),
+            ResultTab::Convergence => show_convergence(ui, convergence(state, sample)),
             ResultTab::Profile => show_profile(ui, sample.scan()),
-            ResultTab::Reflectance => show_reflectance(ui, state, sample),
+            ResultTab::Reflectance => {
+                show_reflectance(ui, state.derived.reflectance(sample.scan_id()));
+            }
         }
     });
 }
 
-fn show_tables(ui: &mut Ui, sample: &Sample) {
-    let scan = sample.scan();
+fn show_tables(ui: &mut Ui, scan: &Scan) {
     let warning = ui.visuals().warn_fg_color;
-    if let Some(failure) = &scan.failure {
-        ui.colored_label(warning, format!("The last fit failed: {failure}"));
+    if let Some(error) = &scan.fit_error {
+        ui.colored_label(warning, format!("The last fit failed: {error}"));
     }
-    let Some(report) = &scan.fitted else {
+    let Some(report) = &scan.last_fit else {
         ui.label("Not fitted yet.");
         return;
     };
-    if scan.failure.is_some() {
-        ui.colored_label(warning, "These tables are of the fit before it.");
+    if scan.fit_error.is_some() {
+        ui.colored_label(warning, "The tables show the previous fit.");
     }
-    if scan.fit_shown().is_none() {
-        ui.colored_label(warning, "The parameters were turned since this fit.");
+    if scan.current_fit().is_none() {
+        ui.colored_label(warning, "The parameters have changed since this fit.");
     }
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         for section in report.sections() {
@@ -73,64 +74,67 @@ fn show_tables(ui: &mut Ui, sample: &Sample) {
     });
 }
 
-/// A plot of the results, with logarithmic axes where they are asked for, and their names.
+/// A plot with named axes.
 fn result_plot<'a>(name: &str, [x, y]: [Axis; 2], [x_name, y_name]: [&str; 2]) -> Plot<'a> {
     let x_hints = AxisHints::new_x()
         .label(x_name)
-        .label_spacing(NUMBERS_APART)
+        .label_spacing(LABEL_SPACING)
         .formatter(move |mark, range| x.label(mark, range));
     let y_hints = AxisHints::new_y()
         .label(y_name)
         .min_thickness(60.0)
         .formatter(move |mark, range| y.label(mark, range));
     Plot::new(name.to_owned())
-        .x_grid_spacer(move |input| x.grid_along(&input))
-        .y_grid_spacer(move |input| y.grid(&input))
+        .x_grid_spacer(move |input| x.horizontal_grid(&input))
+        .y_grid_spacer(move |input| y.vertical_grid(&input))
         .custom_x_axes(vec![x_hints])
         .custom_y_axes(vec![y_hints])
         .label_formatter(|_| None)
         .show_crosshair(false)
 }
 
-/// Numbers along an axis are at least so far apart, in points, and clear from the second on: lines of
-/// the grid between them have none.
-const NUMBERS_APART: Rangef = Rangef {
+/// Distances between grid lines along a horizontal axis, in points: below the first, lines have no
+/// label, from the second on the label is opaque.
+const LABEL_SPACING: Rangef = Rangef {
     min: 31.0,
     max: 36.0,
 };
 
-/// The iterations of the fit that runs, or of the last one, of the scan that is shown.
-fn steps<'a>(state: &'a State, sample: &'a Sample) -> &'a [Point] {
-    let runs = state.run.as_ref().filter(|run| run.is_running());
-    match runs.filter(|run| run.scan == sample.scan_id()) {
+/// A line of one of the result plots.
+fn line<'a>(name: &str, points: Vec<[f64; 2]>, colour: Color32) -> Line<'a> {
+    Line::new(name.to_owned(), PlotPoints::from(points))
+        .color(colour)
+        .width(1.8)
+}
+
+/// The iterations of the current scan: of the running fit, or else of the last one.
+fn convergence<'a>(state: &'a State, sample: &'a Sample) -> &'a [ConvergencePoint] {
+    let running = state.fit_run.as_ref().filter(|run| run.is_running());
+    match running.filter(|run| run.scan == sample.scan_id()) {
         Some(run) => &run.points,
-        None => &sample.scan().steps,
+        None => &sample.scan().convergence,
     }
 }
 
-fn show_convergence(ui: &mut Ui, state: &State, sample: &Sample) {
-    let steps = steps(state, sample);
-    if steps.is_empty() {
-        ui.label("No stage of this wavelength has been fitted yet.");
+fn show_convergence(ui: &mut Ui, convergence: &[ConvergencePoint]) {
+    if convergence.is_empty() {
+        ui.label("This wavelength has not been fitted yet.");
         return;
     }
     let ground = theme::ground(ui.ctx());
     let axes = [Axis::Linear, Axis::Logarithmic];
     let plot = result_plot("convergence", axes, ["iteration", "E / %"]).legend(Legend::default());
+    let position =
+        |p: &ConvergencePoint| Some([p.iteration as f64, Axis::Logarithmic.position(p.e_percent)?]);
     let response = plot.show(ui, |plot_ui| {
         for (i, phase) in [Phase::Stage1, Phase::Stage2].into_iter().enumerate() {
-            let of_phase = steps.iter().filter(|point| point.phase == phase);
-            let points: Vec<[f64; 2]> = of_phase
-                .filter_map(|p| Some([p.iteration as f64, Axis::Logarithmic.place(p.e_percent)?]))
-                .collect();
-            let colour = theme::plain(i, ground);
+            let of_phase = convergence.iter().filter(|point| point.phase == phase);
+            let points: Vec<[f64; 2]> = of_phase.filter_map(position).collect();
+            let colour = theme::series_colour(i, ground);
             let name = phase.to_string();
-            plot_ui.line(Line::new(name.clone(), PlotPoints::from(points.clone())).color(colour));
-            plot_ui.points(
-                Points::new(name, PlotPoints::from(points))
-                    .radius(2.5)
-                    .color(colour),
-            );
+            let marks = Points::new(name.clone(), PlotPoints::from(points.clone()));
+            plot_ui.line(Line::new(name, PlotPoints::from(points)).color(colour));
+            plot_ui.points(marks.radius(2.5).color(colour));
         }
     });
     named(
@@ -141,50 +145,42 @@ fn show_convergence(ui: &mut Ui, state: &State, sample: &Sample) {
 }
 
 fn show_profile(ui: &mut Ui, scan: &Scan) {
-    let fit = scan.fitted.as_ref().and_then(|report| report.fit.as_ref());
+    let fit = scan.last_fit.as_ref();
+    let fit = fit.and_then(|report| report.fit.as_ref());
     let profile = fit.and_then(|fit| Some(&fit.global_check.as_ref()?.profile));
     let Some(profile) = profile.filter(|profile| profile.len() > 1) else {
-        ui.label("There is no profile: not fitted yet, or a model without k1, or k1 held.");
+        ui.label("No profile: the scan is not fitted, k1 is fixed, or the model has no k1.");
         return;
     };
-    let log = |x: f64| Axis::Logarithmic.place(x);
+    let log = |x: f64| Axis::Logarithmic.position(x);
     let point = |p: &ProfilePoint| Some([log(p.parameters.k1)?, log(100.0 * p.error)?]);
     let points: Vec<[f64; 2]> = profile.iter().filter_map(point).collect();
-    let colour = theme::plain(0, theme::ground(ui.ctx()));
+    let colour = theme::series_colour(0, theme::ground(ui.ctx()));
     let plot = result_plot("profile", [Axis::Logarithmic; 2], ["k1", "lowest E / %"]);
-    let here = log(scan.knobs.at.k1);
+    let current = log(scan.parameters.values.k1);
     let weak = ui.visuals().weak_text_color();
     let response = plot.show(ui, |plot_ui| {
-        plot_ui.line(
-            Line::new("profile", PlotPoints::from(points))
-                .color(colour)
-                .width(1.8),
-        );
-        if let Some(k1) = here {
+        plot_ui.line(line("profile", points, colour));
+        if let Some(k1) = current {
             plot_ui.vline(VLine::new("k1", k1).color(weak));
         }
     });
     named(response.response, Role::Image, "plot of the profile of k1");
 }
 
-fn show_reflectance(ui: &mut Ui, state: &State, sample: &Sample) {
-    let points = state.shown.reflectance(sample.scan_id()).to_vec();
-    let colour = theme::plain(0, theme::ground(ui.ctx()));
+fn show_reflectance(ui: &mut Ui, reflectance: &[[f64; 2]]) {
+    let colour = theme::series_colour(0, theme::ground(ui.ctx()));
     let limit = Color32::from_rgb(0xd5, 0x5e, 0x00);
     let names = ["incidence psi / deg", "rho"];
     let plot = result_plot("reflectance", [Axis::Linear; 2], names)
         .include_x(0.0)
         .include_x(90.0)
         .include_y(0.0);
-    let above_one = points.iter().any(|[_, rho]| *rho > 1.0);
+    let exceeds_one = reflectance.iter().any(|[_, rho]| *rho > 1.0);
     let response = plot.show(ui, |plot_ui| {
-        plot_ui.line(
-            Line::new("rho", PlotPoints::from(points))
-                .color(colour)
-                .width(1.8),
-        );
-        if above_one {
-            plot_ui.hline(egui_plot::HLine::new("1", 1.0).color(limit));
+        plot_ui.line(line("rho", reflectance.to_vec(), colour));
+        if exceeds_one {
+            plot_ui.hline(HLine::new("1", 1.0).color(limit));
         }
     });
     named(

@@ -1,78 +1,101 @@
-//! f_r over the signed view angle: all incidences in one plot, or one plot for each, with the
-//! residuals below.
+//! Cartesian plots against the signed view angle: all incidences in one plot, or one plot per
+//! incidence, with optional residuals below.
 
 use brdf_fit::plot::{Layout, Reading, View};
 use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, Plot, PlotResponse};
 
-use super::hover::{Plots, read_out, read_out_residuals};
+use super::axis::{Axis, degrees_grid};
+use super::common::{self, describe, reset_on_demand};
+use super::context::{DrawnCurve, PlotContext};
+use super::hover::{show_residuals, show_values};
 use super::items::{self, Drawing};
-use super::{Drawn, title};
-use crate::axis::{Axis, degrees};
-use crate::state::State;
 
-/// The part of the height that the residuals take.
+/// The fraction of the height that the residuals occupy.
 const RESIDUALS: f32 = 0.3;
 
-/// The axes are at least so wide that plots above each other line up, in points.
+/// Least width of the vertical axis, in points, so that plots above each other are aligned.
 const AXIS_WIDTH: f32 = 62.0;
 
-/// Room above a panel, in points.
+/// Least width of the vertical axis of a narrow plot, in points.
+const NARROW_AXIS_WIDTH: f32 = 36.0;
+
+/// A plot narrower than this has short axis names, in points.
+const NARROW: f32 = 400.0;
+
+/// Space above a panel for the upper half of the topmost label, in points.
 const ABOVE_PANEL: f32 = 7.0;
 
-/// Numbers at the axis of view angles are at least so far apart, in points.
-const LEAST_APART: f64 = 34.0;
+/// Least distance of labelled view angles, in points.
+const LABEL_DISTANCE: f64 = 34.0;
 
-/// A panel is not lower than this, in points.
+/// Least height of a panel, in points.
 const LEAST_PANEL: f32 = 80.0;
 
+/// The position of a plot, and what it shares with others.
+struct Placement<'a> {
+    name: &'a str,
+    /// The size in points.
+    size: Vec2,
+    /// The group of plots that share their bounds, and whether along x and y.
+    group: (Id, [bool; 2]),
+    /// Whether the axes are named; those of panels are named once for all.
+    has_axis_names: bool,
+}
+
 /// All incidences in one plot.
-pub fn together(ui: &mut Ui, plots: &Plots) {
-    let all: Vec<&Drawn> = plots.drawn.iter().collect();
-    let place = Place {
-        state: plots.state,
+pub(super) fn together(ui: &mut Ui, context: &PlotContext) {
+    let all: Vec<&DrawnCurve> = context.curves.iter().collect();
+    let placement = Placement {
         name: "theory",
         size: ui.available_size(),
-        group: Some((Id::unique("theta"), [true, false])),
-        named: true,
+        group: (Id::unique("theta"), [true, false]),
+        has_axis_names: true,
     };
-    pair(ui, plots, &all, "residuals", &place);
+    show_pair(ui, context, &all, "residuals", &placement);
 }
 
-/// Theory and experiment, and where they are asked for the residuals below.
-fn pair(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], residuals: &str, place: &Place) {
-    if !place.state.view.residuals {
-        theory(ui, plots, drawn, place);
+/// A plot of the values, and of the residuals below if they are shown.
+fn show_pair(
+    ui: &mut Ui,
+    context: &PlotContext,
+    curves: &[&DrawnCurve],
+    residuals: &str,
+    placement: &Placement,
+) {
+    if !context.state.view.residuals {
+        show_values_plot(ui, context, curves, placement);
         return;
     }
-    let Vec2 { x, y } = place.size;
-    let below = y * RESIDUALS;
-    let above = Place {
-        size: vec2(x, y - below),
-        ..*place
+    let Vec2 { x, y } = placement.size;
+    let height_below = y * RESIDUALS;
+    let above = Placement {
+        size: vec2(x, y - height_below),
+        ..*placement
     };
-    theory(ui, plots, drawn, &above);
+    show_values_plot(ui, context, curves, &above);
     let gap = ui.spacing().item_spacing.y;
-    let below = Place {
+    let below = Placement {
         name: residuals,
-        size: vec2(x, (below - gap).max(1.0)),
-        ..*place
+        size: vec2(x, (height_below - gap).max(1.0)),
+        ..*placement
     };
-    residual(ui, plots, drawn, &below);
+    show_residual_plot(ui, context, curves, &below);
 }
 
-/// One plot for each incidence, with the same axes.
-pub fn panels(ui: &mut Ui, plots: &Plots) {
-    let panels = by_incidence(plots.drawn);
-    name_axes(ui, &plots.state.view);
-    let whole = ui.available_size();
-    let columns = columns(panels.len(), whole);
+/// One plot per incidence, all with the same axes.
+pub(super) fn panels(ui: &mut Ui, context: &PlotContext) {
+    let panels = by_incidence(context.curves);
+    let view = &context.state.view;
+    show_axis_names(ui, view);
+    let available = ui.available_size();
+    let columns = panel_columns(panels.len(), available);
     let rows = panels.len().div_ceil(columns);
     let gap = ui.spacing().item_spacing;
-    let least = LEAST_PANEL * if plots.state.view.residuals { 2.0 } else { 1.0 };
+    let least_height = LEAST_PANEL * if view.residuals { 2.0 } else { 1.0 };
     let size = vec2(
-        (whole.x - gap.x * (columns - 1) as f32) / columns as f32,
-        ((whole.y - gap.y * rows as f32) / rows as f32).max(least),
+        (available.x - gap.x * (columns - 1) as f32) / columns as f32,
+        ((available.y - gap.y * rows as f32) / rows as f32).max(least_height),
     );
     egui::ScrollArea::vertical()
         .auto_shrink(false)
@@ -80,8 +103,8 @@ pub fn panels(ui: &mut Ui, plots: &Plots) {
             for (row, chunk) in panels.chunks(columns).enumerate() {
                 ui.horizontal(|ui| {
                     for (column, panel) in chunk.iter().enumerate() {
-                        let place = row * columns + column;
-                        ui.allocate_ui(size, |ui| show_panel(ui, plots, panel, place, size));
+                        let index = row * columns + column;
+                        ui.allocate_ui(size, |ui| show_panel(ui, context, panel, index, size));
                     }
                 });
             }
@@ -89,7 +112,7 @@ pub fn panels(ui: &mut Ui, plots: &Plots) {
 }
 
 /// The names of the axes, once for all panels.
-fn name_axes(ui: &mut Ui, view: &View) {
+fn show_axis_names(ui: &mut Ui, view: &View) {
     let below = if view.residuals {
         "; below: measured - theory"
     } else {
@@ -100,41 +123,48 @@ fn name_axes(ui: &mut Ui, view: &View) {
     ui.label(format!("{value} over {theta}{below}"));
 }
 
-fn show_panel(ui: &mut Ui, plots: &Plots, panel: &[&Drawn], place: usize, size: Vec2) {
+fn show_panel(
+    ui: &mut Ui,
+    context: &PlotContext,
+    curves: &[&DrawnCurve],
+    index: usize,
+    size: Vec2,
+) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        // The uppermost number at the axis stands half above it.
         ui.add_space(ABOVE_PANEL);
-        let names = [format!("theory {place}"), format!("residuals {place}")];
-        let place = Place {
-            state: plots.state,
-            name: &names[0],
+        let [name, residuals] = [format!("theory {index}"), format!("residuals {index}")];
+        let placement = Placement {
+            name: &name,
             size: vec2(size.x, size.y - ABOVE_PANEL),
-            // Panels with residuals share the view angle only: the two kinds have other heights.
-            group: Some((Id::unique("panels"), [true, !plots.state.view.residuals])),
-            named: false,
+            // Values and residuals have different ranges, and can share only the view angle.
+            group: (Id::unique("panels"), [true, !context.state.view.residuals]),
+            has_axis_names: false,
         };
-        pair(ui, plots, panel, &names[1], &place);
+        show_pair(ui, context, curves, &residuals, &placement);
     });
 }
 
-/// The curves of each incidence, of all samples together.
-fn by_incidence<'a>(drawn: &'a [Drawn<'a>]) -> Vec<Vec<&'a Drawn<'a>>> {
-    let mut all: Vec<&Drawn> = drawn.iter().collect();
+/// The curves grouped by incidence, over all samples.
+fn by_incidence<'a>(curves: &'a [DrawnCurve<'a>]) -> Vec<Vec<&'a DrawnCurve<'a>>> {
+    let mut all: Vec<&DrawnCurve> = curves.iter().collect();
     all.sort_by(|a, b| a.curve.psi.total_cmp(&b.curve.psi));
-    let same = |a: &&Drawn, b: &&Drawn| (b.curve.psi - a.curve.psi).to_degrees() < 0.05;
-    all.chunk_by(same).map(<[_]>::to_vec).collect()
+    let is_same = |a: &&DrawnCurve, b: &&DrawnCurve| is_same_incidence(a.curve.psi, b.curve.psi);
+    all.chunk_by(is_same).map(<[_]>::to_vec).collect()
 }
 
-/// So many columns that the panels are about half again as wide as high.
-pub(super) fn columns(count: usize, size: Vec2) -> usize {
+/// Whether ascending incidence angles in radians share a panel.
+pub(super) fn is_same_incidence(lower: f64, upper: f64) -> bool {
+    (upper - lower).to_degrees() < 0.05
+}
+
+/// The number of columns of panels with an aspect ratio of about 3:2.
+pub(super) fn panel_columns(count: usize, size: Vec2) -> usize {
     let columns = (count as f32 * size.x / (1.5 * size.y.max(1.0))).sqrt();
     (columns.round() as usize).clamp(1, count.clamp(1, 6))
 }
 
-type Group = Option<(Id, [bool; 2])>;
-
-/// The names of the axes of values and of view angles, short ones where there is little room.
+/// The names of the vertical and the horizontal axis, shortened for narrow plots.
 fn axis_names(view: &View, narrow: bool) -> [String; 2] {
     let (quantity, theta) = (view.quantity, view.theta_name());
     if narrow {
@@ -145,155 +175,146 @@ fn axis_names(view: &View, narrow: bool) -> [String; 2] {
     }
 }
 
-/// Where a plot is, and what it shares with others.
-struct Place<'a> {
-    state: &'a State,
-    name: &'a str,
-    size: Vec2,
-    group: Group,
-    /// Whether its axes have names; those of panels stand once for all.
-    named: bool,
+/// An empty plot against the view angle. `name` is the name of the vertical axis; the horizontal one
+/// is named in the lowest of plots above each other.
+fn plot_over_theta<'a>(
+    context: &PlotContext,
+    placement: &Placement<'a>,
+    axis: Axis,
+    name: &str,
+    is_lowest: bool,
+) -> Plot<'a> {
+    let (state, size) = (context.state, placement.size);
+    let narrow = size.x < NARROW;
+    let mut x = theta_axis(size.x);
+    let mut y = AxisHints::new_y()
+        .formatter(move |mark, range| axis.label(mark, range))
+        .label_spacing(Rangef::new(11.0, 15.0))
+        .min_thickness(if narrow {
+            NARROW_AXIS_WIDTH
+        } else {
+            AXIS_WIDTH
+        });
+    if placement.has_axis_names {
+        y = y.label(name);
+        if is_lowest {
+            let [_, theta] = axis_names(&state.view, narrow);
+            x = x.label(theta);
+        }
+    }
+    let (group, shared) = placement.group;
+    Plot::new(placement.name)
+        .id(common::id(state, placement.name))
+        .width(size.x)
+        .height(size.y)
+        .include_x(-90.0)
+        .include_x(90.0)
+        .set_margin_fraction(Vec2::ZERO)
+        .x_grid_spacer(|input| degrees_grid(&input))
+        .y_grid_spacer(move |input| axis.vertical_grid(&input))
+        .custom_x_axes(vec![x])
+        .custom_y_axes(vec![y])
+        .show_crosshair(false)
+        .label_formatter(|_| None)
+        .link_axis(group, shared)
 }
 
-/// A plot that is narrower has short names at its axes, in points.
-const NARROW: f32 = 400.0;
-
-/// A plot over the view angle. `lowest` of those above each other has the name of the axis.
-fn over_theta<'a>(place: &Place<'a>, axis: Axis, value: &str, lowest: bool) -> Plot<'a> {
-    let narrow = place.size.x < NARROW;
-    let width = f64::from(place.size.x);
-    let mut x = AxisHints::new_x()
+/// The axis of view angles in a plot of a width, in points.
+fn theta_axis<'a>(width: f32) -> AxisHints<'a> {
+    let width = f64::from(width);
+    AxisHints::new_x()
         .formatter(move |mark, range| {
-            let apart = mark.step_size / (range.end() - range.start()) * width;
-            if apart < LEAST_APART {
+            let distance = mark.step_size / (range.end() - range.start()) * width;
+            if distance < LABEL_DISTANCE {
                 return String::new();
             }
             Axis::Linear.label(mark, range)
         })
-        .label_spacing(Rangef::new(8.0, 12.0));
-    let mut y = AxisHints::new_y()
-        .formatter(move |mark, range| axis.label(mark, range))
-        .label_spacing(Rangef::new(11.0, 15.0))
-        .min_thickness(if narrow { 36.0 } else { AXIS_WIDTH });
-    if place.named {
-        y = y.label(value);
-        if lowest {
-            let [_, theta] = axis_names(&place.state.view, narrow);
-            x = x.label(theta);
-        }
-    }
-    let mut plot = Plot::new(place.name)
-        .id(super::id(place.state, place.name))
-        .width(place.size.x)
-        .height(place.size.y)
-        .include_x(-90.0)
-        .include_x(90.0)
-        .set_margin_fraction(Vec2::ZERO)
-        .x_grid_spacer(|input| degrees(&input))
-        .y_grid_spacer(move |input| axis.grid(&input))
-        .custom_x_axes(vec![x])
-        .custom_y_axes(vec![y])
-        .show_crosshair(false)
-        .label_formatter(|_| None);
-    if let Some((id, axes)) = place.group {
-        plot = plot.link_axis(id, axes);
-    }
-    plot
+        .label_spacing(Rangef::new(8.0, 12.0))
 }
 
-fn theory(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
-    let (state, axis) = (place.state, plots.axis);
-    let range = plots.range;
-    let end = |value: f64| axis.place(value).unwrap_or(0.0);
-    let lowest = !state.view.residuals;
-    let [name, _] = axis_names(&state.view, place.size.x < NARROW);
-    let plot = over_theta(place, axis, &name, lowest)
-        .include_y(end(range.0))
-        .include_y(end(range.1));
-    let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
-        for (i, one) in drawn.iter().enumerate() {
-            let (curve, colour) = (one.curve, one.colour);
-            plot_ui.add(Drawing::new(
-                format!("curve {i}"),
-                move |transform, shapes| {
-                    if let Some(mirror) = state.view.mirror_deg(curve.psi) {
-                        items::upright(transform, mirror, colour, shapes);
-                    }
-                    items::band(transform, axis, &curve.theory, colour, shapes);
-                    let value = |reading: &Reading| reading.value;
-                    items::readings(transform, axis, &curve.readings, value, one.look(), shapes);
-                    items::theory(transform, axis, &curve.theory, colour, shapes);
-                },
-            ));
+fn show_values_plot(
+    ui: &mut Ui,
+    context: &PlotContext,
+    curves: &[&DrawnCurve],
+    placement: &Placement,
+) {
+    let (view, axis) = (&context.state.view, context.axis);
+    let end = |value: f64| axis.position(value).unwrap_or(0.0);
+    let [name, _] = axis_names(view, placement.size.x < NARROW);
+    let plot = plot_over_theta(context, placement, axis, &name, !view.residuals)
+        .include_y(end(context.range.0))
+        .include_y(end(context.range.1));
+    let plot = reset_on_demand(ui, context.state, placement.name, plot);
+    let response = plot.show(ui, |plot_ui| {
+        for (i, drawn) in curves.iter().enumerate() {
+            plot_ui.add(curve_item(format!("curve {i}"), view, axis, drawn));
         }
     });
-    let at = |theta_deg: f64, value: f64| Some([theta_deg, axis.place(value)?]);
-    read_out(&response, plots, drawn, at);
-    if plots.state.view.layout == Layout::Panels {
-        name_panel(ui, &state.view, &response, drawn);
+    let position = |theta_deg: f64, value: f64| Some([theta_deg, axis.position(value)?]);
+    show_values(&response, view, curves, position);
+    if view.layout == Layout::Panels {
+        show_panel_title(ui, view, &response, curves);
     }
-    describe(&response, "BRDF plot", drawn);
+    describe(&response, "BRDF plot", curves);
 }
 
-fn residual(ui: &mut Ui, plots: &Plots, drawn: &[&Drawn], place: &Place) {
-    let reach = plots.reach;
-    let plot = over_theta(place, Axis::Linear, "measured - theory", true)
-        .include_y(-reach)
-        .include_y(reach);
-    let response = reset_on_demand(ui, place.state, place.name, plot).show(ui, |plot_ui| {
-        for (i, one) in drawn.iter().enumerate() {
-            plot_ui.add(Drawing::new(
-                format!("residuals {i}"),
-                move |transform, shapes| {
-                    let (axis, readings) = (Axis::Linear, &one.curve.readings);
-                    let value = Reading::residual;
-                    items::readings(transform, axis, readings, value, one.look(), shapes);
-                },
-            ));
+/// A curve with its mirror direction, its band and its readings.
+fn curve_item<'a>(name: String, view: &View, axis: Axis, drawn: &'a DrawnCurve) -> Drawing<'a> {
+    let (curve, colour) = (drawn.curve, drawn.colour);
+    let mirror = view.mirror_deg(curve.psi);
+    Drawing::new(name, move |transform, shapes| {
+        if let Some(mirror) = mirror {
+            items::vertical_line(transform, mirror, colour, shapes);
+        }
+        items::band(transform, axis, &curve.theory, colour, shapes);
+        let value = |reading: &Reading| reading.value;
+        let style = drawn.mark_style();
+        items::readings(transform, axis, &curve.readings, value, style, shapes);
+        items::theory(transform, axis, &curve.theory, colour, shapes);
+    })
+}
+
+fn show_residual_plot(
+    ui: &mut Ui,
+    context: &PlotContext,
+    curves: &[&DrawnCurve],
+    placement: &Placement,
+) {
+    let (axis, limit) = (Axis::Linear, context.residual_limit);
+    let plot = plot_over_theta(context, placement, axis, "measured - theory", true)
+        .include_y(-limit)
+        .include_y(limit);
+    let plot = reset_on_demand(ui, context.state, placement.name, plot);
+    let response = plot.show(ui, |plot_ui| {
+        for (i, drawn) in curves.iter().enumerate() {
+            let name = format!("residuals {i}");
+            plot_ui.add(Drawing::new(name, move |transform, shapes| {
+                let (readings, style) = (&drawn.curve.readings, drawn.mark_style());
+                items::readings(transform, axis, readings, Reading::residual, style, shapes);
+            }));
         }
     });
-    read_out_residuals(&response, plots, drawn);
-    describe(&response, "Residual plot", drawn);
+    show_residuals(&response, &context.state.view, curves);
+    describe(&response, "Residual plot", curves);
 }
 
-/// The plot with everything in view again, where the user asked for it since the last frame.
-pub(super) fn reset_on_demand<'a>(ui: &Ui, state: &State, name: &str, plot: Plot<'a>) -> Plot<'a> {
-    let key = super::id(state, name).with("resets");
-    let seen = ui.data(|data| data.get_temp::<u64>(key)).unwrap_or(0);
-    if seen == state.zoom_resets {
-        return plot;
-    }
-    ui.data_mut(|data| data.insert_temp(key, state.zoom_resets));
-    plot.reset()
-}
-
-/// The incidence of a panel, in the upper corner that is away from the mirror direction.
-fn name_panel(ui: &Ui, view: &View, response: &PlotResponse<()>, drawn: &[&Drawn]) {
-    let Some(first) = drawn.first() else {
+/// The incidence of a panel, in the upper corner opposite to the mirror direction.
+fn show_panel_title(ui: &Ui, view: &View, response: &PlotResponse<()>, curves: &[&DrawnCurve]) {
+    let Some(first) = curves.first() else {
         return;
     };
     let frame = response.transform.frame();
-    let mirror_at_left = view
+    let mirror_is_left = view
         .mirror_deg(first.curve.psi)
         .is_some_and(|mirror| mirror < 0.0);
-    let (corner, align) = if mirror_at_left {
+    let (corner, align) = if mirror_is_left {
         (frame.right_top() + vec2(-5.0, 3.0), Align2::RIGHT_TOP)
     } else {
         (frame.left_top() + vec2(5.0, 3.0), Align2::LEFT_TOP)
     };
     let font = TextStyle::Body.resolve(ui.style());
     let colour = ui.visuals().strong_text_color();
-    ui.painter()
-        .text(corner, align, title(first.curve.psi), font, colour);
-}
-
-/// Says in words what the plot shows, for those who do not see it.
-pub fn describe(response: &PlotResponse<()>, name: &str, drawn: &[&Drawn]) {
-    let readings: usize = drawn.iter().map(|one| one.curve.readings.len()).sum();
-    let words = format!("{} curves, {readings} readings", drawn.len());
-    response
-        .response
-        .widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, name));
-    let ctx = &response.response.ctx;
-    ctx.accesskit_node_builder(response.response.id, |node| node.set_description(words));
+    let title = common::title(first.curve.psi);
+    ui.painter().text(corner, align, title, font, colour);
 }

@@ -1,4 +1,4 @@
-//! What is drawn into a plot: lines, bands and readings, none of which moves the axes.
+//! The items drawn into a plot: lines, bands and readings. None of them affects the bounds.
 
 use std::ops::RangeInclusive;
 
@@ -6,30 +6,30 @@ use brdf_fit::plot::{MarkShape, Reading, Theory};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui, epaint::PathShape, pos2, vec2};
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform};
 
-use crate::axis::Axis;
+use super::axis::Axis;
 
-/// Farther from the plot than this, in points, a position is not told apart.
+/// Positions are clamped to this distance from the plot, in points.
 const FAR: f32 = 1e5;
 
 /// Half the size of a mark, in points.
 const MARK: f32 = 2.6;
 
-/// More readings of one curve than this overlap each other.
+/// A curve with more readings than this is drawn with simple marks, because they overlap.
 const DENSE: usize = 250;
 
-/// Opacity of a band.
+/// Opacity of a band of uncertainty.
 const BAND: f32 = 0.25;
 
 type Draw<'a> = Box<dyn Fn(&PlotTransform, &mut Vec<Shape>) + 'a>;
 
-/// Shapes in a plot. It has no bounds: what the axes show is said by the plot itself.
+/// Shapes in a plot. They have no bounds: the range of the axes is set by the plot itself.
 pub struct Drawing<'a> {
     base: PlotItemBase,
     draw: Draw<'a>,
 }
 
 impl<'a> Drawing<'a> {
-    /// A drawing with a name that no other in the plot has.
+    /// A drawing with a name that is unique in the plot.
     pub fn new(name: String, draw: impl Fn(&PlotTransform, &mut Vec<Shape>) + 'a) -> Self {
         Self {
             base: PlotItemBase::new(name),
@@ -66,8 +66,8 @@ impl PlotItem for Drawing<'_> {
     }
 }
 
-/// Where a point of the plot is on the screen.
-fn place(transform: &PlotTransform, [x, y]: [f64; 2]) -> Pos2 {
+/// The position of a point of the plot on the screen.
+fn screen_position(transform: &PlotTransform, [x, y]: [f64; 2]) -> Pos2 {
     let frame = transform.frame();
     let position = pos2(
         transform.position_from_point_x(x),
@@ -76,10 +76,10 @@ fn place(transform: &PlotTransform, [x, y]: [f64; 2]) -> Pos2 {
     position.clamp(frame.min - vec2(FAR, FAR), frame.max + vec2(FAR, FAR))
 }
 
-/// The part of a segment that is within `margin` points of the plot, in points. It is cut in double
-/// precision before it becomes a position: where a plot is zoomed in, a segment can be longer than
-/// any number of pixels that could be drawn.
-fn segment(transform: &PlotTransform, [a, b]: [[f64; 2]; 2], margin: f32) -> Option<[Pos2; 2]> {
+/// Clips a segment to the plot with a margin, and returns its ends on the screen, in points. The
+/// segment is clipped in double precision, because in a zoomed plot it can be much longer than the
+/// range of screen positions.
+fn clipped(transform: &PlotTransform, [a, b]: [[f64; 2]; 2], margin: f32) -> Option<[Pos2; 2]> {
     let (frame, bounds) = (transform.frame().expand(margin), transform.bounds());
     let point = |[x, y]: [f64; 2]| {
         let part = [
@@ -99,9 +99,9 @@ fn segment(transform: &PlotTransform, [a, b]: [[f64; 2]; 2], margin: f32) -> Opt
         if !(a.is_finite() && b.is_finite()) {
             return None;
         }
-        let reach = |side: f32| (f64::from(side) - a) / (b - a);
+        let parameter = |side: f32| (f64::from(side) - a) / (b - a);
         if a != b {
-            let (low, high) = (reach(side.min), reach(side.max));
+            let (low, high) = (parameter(side.min), parameter(side.max));
             from = from.max(low.min(high));
             to = to.min(low.max(high));
         } else if !side.contains(a as f32) {
@@ -115,7 +115,7 @@ fn segment(transform: &PlotTransform, [a, b]: [[f64; 2]; 2], margin: f32) -> Opt
     (from <= to).then(|| [at(from), at(to)])
 }
 
-/// A dashed segment, as far as it is to be seen.
+/// The visible part of a segment, dashed.
 pub fn dashed(
     transform: &PlotTransform,
     ends: [[f64; 2]; 2],
@@ -123,12 +123,12 @@ pub fn dashed(
     shapes: &mut Vec<Shape>,
 ) {
     let stroke = Stroke::new(1.0, colour.gamma_multiply(0.6));
-    if let Some(seen) = segment(transform, ends, MARK) {
-        shapes.extend(Shape::dashed_line(&seen, stroke, 4.0, 4.0));
+    if let Some(ends) = clipped(transform, ends, MARK) {
+        shapes.extend(Shape::dashed_line(&ends, stroke, 4.0, 4.0));
     }
 }
 
-/// A line over the view angle, interrupted where the axis has no place for it.
+/// A line through points, interrupted at values that have no position on the axis.
 pub fn line(
     transform: &PlotTransform,
     axis: Axis,
@@ -137,7 +137,7 @@ pub fn line(
     shapes: &mut Vec<Shape>,
 ) {
     let mut run: Vec<Pos2> = Vec::new();
-    let mut end = |run: &mut Vec<Pos2>| {
+    let mut end_run = |run: &mut Vec<Pos2>| {
         if run.len() > 1 {
             shapes.push(Shape::Path(PathShape::line(std::mem::take(run), stroke)));
         }
@@ -145,24 +145,24 @@ pub fn line(
     };
     let mut before = None;
     for (x, value) in points {
-        let here = axis.place(value).map(|y| [x, y]);
+        let here = axis.position(value).map(|y| [x, y]);
         let ends = before.zip(here);
-        match ends.and_then(|(a, b)| segment(transform, [a, b], FAR)) {
+        match ends.and_then(|(a, b)| clipped(transform, [a, b], FAR)) {
             Some([from, to]) => {
                 if run.last() != Some(&from) {
-                    end(&mut run);
+                    end_run(&mut run);
                     run.push(from);
                 }
                 run.push(to);
             }
-            None => end(&mut run),
+            None => end_run(&mut run),
         }
         before = here;
     }
-    end(&mut run);
+    end_run(&mut run);
 }
 
-/// The theory's line.
+/// The line of the theory.
 pub fn theory(
     transform: &PlotTransform,
     axis: Axis,
@@ -174,7 +174,7 @@ pub fn theory(
     line(transform, axis, points, Stroke::new(1.8, colour), shapes);
 }
 
-/// The band of one standard error to both sides of the theory.
+/// The band of one standard error on both sides of the theory.
 pub fn band(
     transform: &PlotTransform,
     axis: Axis,
@@ -185,15 +185,15 @@ pub fn band(
     let bottom = transform.bounds().min()[1];
     let ends = theory.iter().map(|t| {
         let sigma = t.sigma?;
-        let high = axis.place(t.value + sigma)?;
-        // What lies below a logarithmic axis ends at its bottom.
-        let low = axis.place(t.value - sigma).unwrap_or(bottom).max(bottom);
+        let high = axis.position(t.value + sigma)?;
+        // An end without a position on a logarithmic axis is below the plot.
+        let low = axis.position(t.value - sigma).unwrap_or(bottom).max(bottom);
         Some([[t.theta_deg, high], [t.theta_deg, low]])
     });
     ribbon(transform, ends, colour, shapes);
 }
 
-/// The area between two lines, interrupted where there is nothing.
+/// The area between two lines, given by pairs of points; interrupted at `None`.
 pub fn ribbon(
     transform: &PlotTransform,
     ends: impl Iterator<Item = Option<[[f64; 2]; 2]>>,
@@ -210,7 +210,7 @@ pub fn ribbon(
         };
         let here = mesh.vertices.len() as u32;
         for end in ends {
-            mesh.colored_vertex(place(transform, end), faint);
+            mesh.colored_vertex(screen_position(transform, end), faint);
         }
         if let Some(before) = last {
             mesh.add_triangle(before, before + 1, here);
@@ -223,70 +223,72 @@ pub fn ribbon(
     }
 }
 
-/// How readings of a curve look.
+/// The appearance of readings.
 #[derive(Clone, Copy)]
-pub struct Look {
+pub struct MarkStyle {
     /// The mark.
     pub mark: MarkShape,
     /// The colour.
     pub colour: Color32,
 }
 
-/// Readings with their error bars. `value` says what of a reading is shown.
+/// Readings with their error bars. `value` is the value of a reading that is shown.
 pub fn readings(
     transform: &PlotTransform,
     axis: Axis,
     readings: &[Reading],
     value: impl Fn(&Reading) -> f64,
-    look: Look,
+    style: MarkStyle,
     shapes: &mut Vec<Shape>,
 ) {
     let bottom = transform.bounds().min()[1];
     for reading in readings {
         let (x, value) = (reading.theta_deg, value(reading));
         let ends = reading.sigma.and_then(|sigma| {
-            let high = axis.place(value + sigma)?;
-            let low = axis.place(value - sigma).unwrap_or(bottom);
+            let high = axis.position(value + sigma)?;
+            let low = axis.position(value - sigma).unwrap_or(bottom);
             Some([[x, low], [x, high]])
         });
-        error_bar(transform, ends, look.colour, shapes);
+        error_bar(transform, ends, style.colour, shapes);
     }
-    let at = |reading: &Reading| Some([reading.theta_deg, axis.place(value(reading))?]);
+    let at = |reading: &Reading| Some([reading.theta_deg, axis.position(value(reading))?]);
     let points: Vec<[f64; 2]> = readings.iter().filter_map(at).collect();
-    marks(transform, &points, look, shapes);
+    marks(transform, &points, style, shapes);
 }
 
-/// The error bar of a reading, where it has one.
+/// The visible part of the error bar of a reading, if it has one.
 pub fn error_bar(
     transform: &PlotTransform,
     ends: Option<[[f64; 2]; 2]>,
     colour: Color32,
     shapes: &mut Vec<Shape>,
 ) {
-    if let Some(seen) = ends.and_then(|ends| segment(transform, ends, MARK)) {
+    if let Some(ends) = ends.and_then(|ends| clipped(transform, ends, MARK)) {
         let bar = Stroke::new(1.0, colour.gamma_multiply(0.55));
-        shapes.push(Shape::line_segment(seen, bar));
+        shapes.push(Shape::line_segment(ends, bar));
     }
 }
 
-/// The marks of readings, as far as they are within the plot.
+/// The marks of readings within the plot.
 pub fn marks(
     transform: &PlotTransform,
     points: &[[f64; 2]],
-    Look { mark, colour }: Look,
+    MarkStyle { mark, colour }: MarkStyle,
     shapes: &mut Vec<Shape>,
 ) {
     let frame = transform.frame().expand(MARK);
-    let positions = points.iter().map(|point| place(transform, *point));
-    let seen = positions.filter(|position| frame.contains(*position));
+    let positions = points
+        .iter()
+        .map(|point| screen_position(transform, *point));
+    let visible = positions.filter(|position| frame.contains(*position));
     if points.len() > DENSE {
-        shapes.push(squares(seen, colour));
+        shapes.push(squares(visible, colour));
     } else {
-        shapes.extend(seen.map(|position| mark_at(mark, position, MARK, colour)));
+        shapes.extend(visible.map(|position| mark_at(mark, position, MARK, colour)));
     }
 }
 
-/// Squares in one shape, which is drawn many times faster than as many marks with smooth borders.
+/// Squares in one mesh, which is drawn many times faster than separate marks with smooth borders.
 fn squares(positions: impl Iterator<Item = Pos2>, colour: Color32) -> Shape {
     let mut mesh = Mesh::default();
     let size = vec2(1.6, 1.6) * MARK;
@@ -321,8 +323,8 @@ pub fn mark_at(mark: MarkShape, at: Pos2, size: f32, colour: Color32) -> Shape {
     }
 }
 
-/// An upright dashed line over the whole plot.
-pub fn upright(transform: &PlotTransform, x: f64, colour: Color32, shapes: &mut Vec<Shape>) {
+/// A vertical dashed line over the whole plot.
+pub fn vertical_line(transform: &PlotTransform, x: f64, colour: Color32, shapes: &mut Vec<Shape>) {
     let ([_, bottom], [_, top]) = (transform.bounds().min(), transform.bounds().max());
     dashed(transform, [[x, top], [x, bottom]], colour, shapes);
 }
@@ -341,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_drawn_does_not_grow_with_the_zoom() {
+    fn the_number_of_shapes_does_not_grow_with_the_zoom() {
         for exponent in -15..3 {
             let transform = zoomed(10_f64.powi(exponent));
             let mut shapes = Vec::new();
@@ -357,7 +359,7 @@ mod tests {
                 Color32::RED,
                 &mut shapes,
             );
-            upright(&transform, 0.0, Color32::RED, &mut shapes);
+            vertical_line(&transform, 0.0, Color32::RED, &mut shapes);
             assert!(
                 (30..300).contains(&shapes.len()),
                 "{exponent}: {}",
@@ -367,15 +369,15 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_cut_where_it_really_leaves() {
-        // Through (0, 1) at 45 deg of the plane, to ends that are 1e9 plots away.
+    fn a_line_is_clipped_where_it_leaves_the_plot() {
+        // Through (0, 1) at 45 deg, to ends at a distance of 1e9 plots.
         let transform = zoomed(1e-9);
-        let ends = segment(&transform, [[-1.0, 0.0], [3.0, 4.0]], 0.0).unwrap();
+        let ends = clipped(&transform, [[-1.0, 0.0], [3.0, 4.0]], 0.0).unwrap();
         assert!((ends[0] - pos2(10.0, 320.0)).length() < 0.01, "{ends:?}");
         assert!((ends[1] - pos2(410.0, 20.0)).length() < 0.01, "{ends:?}");
-        assert_eq!(segment(&transform, [[1.0, 0.0], [2.0, 3.0]], 0.0), None);
+        assert_eq!(clipped(&transform, [[1.0, 0.0], [2.0, 3.0]], 0.0), None);
         assert_eq!(
-            segment(&transform, [[0.0, f64::NAN], [0.0, 1.0]], 0.0),
+            clipped(&transform, [[0.0, f64::NAN], [0.0, 1.0]], 0.0),
             None
         );
     }

@@ -1,94 +1,95 @@
-//! The middle of the window: theory against experiment.
+//! The plot in the middle of the window: theory and measurement.
 
-pub mod cartesian;
-pub mod hover;
+pub mod axis;
+mod cartesian;
+mod common;
+pub mod context;
+mod hover;
 pub mod items;
-pub mod polar;
-pub mod toolbar;
+mod polar;
+pub mod ticks;
+mod toolbar;
 
-use brdf_fit::plot::{Curve, Layout, MarkShape, mark};
-use egui::{CentralPanel, Color32, Id, Ui};
+use brdf_fit::plot::{Layout, mark};
+use egui::{CentralPanel, Ui, Vec2};
 
 use crate::intent::Intent;
 use crate::state::State;
 use crate::theme;
-use crate::widgets::degrees;
+use context::{DrawnCurve, PlotContext};
 
-/// A curve with how it looks.
-pub struct Drawn<'a> {
-    /// The curve.
-    pub curve: &'a Curve,
-    /// The name of its sample.
-    pub sample: &'a str,
-    /// Its colour.
-    pub colour: Color32,
-    /// The mark of its readings.
-    pub mark: MarkShape,
-}
+pub use common::id;
 
-impl Drawn<'_> {
-    /// How its readings look.
-    pub fn look(&self) -> items::Look {
-        items::Look {
-            mark: self.mark,
-            colour: self.colour,
-        }
-    }
-}
+/// Width of a column of readings, in points; less than a mark.
+const COLUMN_WIDTH: f32 = 4.0;
 
-/// Draws the plot.
-pub fn show(ui: &mut Ui, state: &mut State, intents: &mut Vec<Intent>) {
+/// The number of columns is a multiple of this, so that the readings are not selected anew in each
+/// frame while a panel is resized.
+const COLUMN_STEP: f32 = 32.0;
+
+/// The largest number of columns.
+const MOST_COLUMNS: f32 = 1024.0;
+
+/// Draws the toolbar and the plot.
+pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     CentralPanel::default().show(ui, |ui| {
         toolbar::show(ui, state, intents);
-        state.columns = columns(state, ui.available_size());
+        let columns = columns(state, ui.available_size());
+        if columns != state.columns {
+            intents.push(Intent::PlotColumns(columns));
+        }
         if state.visible().next().is_none() {
-            ui.centered_and_justified(|ui| {
-                ui.label(if state.samples.is_empty() {
-                    "Drop a scan here, or open one: File > Open, or Built-in."
-                } else {
-                    "All samples are hidden."
-                });
-            });
+            show_hint(ui, state);
             return;
         }
-        let all = drawn(ui, state);
-        let plot = hover::Plots::new(state, &all);
+        let curves = drawn_curves(ui, state);
+        let context = PlotContext::new(state, &curves);
         match state.view.layout {
-            Layout::Together => cartesian::together(ui, &plot),
-            Layout::Panels => cartesian::panels(ui, &plot),
-            Layout::Polar => polar::show(ui, &plot),
+            Layout::Together => cartesian::together(ui, &context),
+            Layout::Panels => cartesian::panels(ui, &context),
+            Layout::Polar => polar::show(ui, &context),
         }
     });
 }
 
-/// So many columns of readings the plot can show: one is four points wide, less than a mark. It
-/// grows in steps, so that the drag of a border does not thin anew in every frame.
-fn columns(state: &State, size: egui::Vec2) -> usize {
-    const STEP: f32 = 32.0;
-    let width = match state.view.layout {
-        Layout::Panels => size.x / cartesian::columns(incidences(state), size) as f32,
-        Layout::Together | Layout::Polar => size.x,
-    };
-    ((width / (4.0 * STEP)).ceil() * STEP).clamp(STEP, 1024.0) as usize
+fn show_hint(ui: &mut Ui, state: &State) {
+    ui.centered_and_justified(|ui| {
+        ui.label(if state.samples.is_empty() {
+            "Drop a scan here, or open one from the menu File or Built-in."
+        } else {
+            "All samples are hidden."
+        });
+    });
 }
 
-/// How many panels there are: one for each incidence of all samples that are shown.
-fn incidences(state: &State) -> usize {
-    let mut psi: Vec<f64> = state.visible().flat_map(|s| s.scan().shown_psi()).collect();
+/// The number of columns of readings that fit into a plot within a size.
+fn columns(state: &State, size: Vec2) -> usize {
+    let width = match state.view.layout {
+        Layout::Panels => size.x / cartesian::panel_columns(panel_count(state), size) as f32,
+        Layout::Together | Layout::Polar => size.x,
+    };
+    let columns = (width / (COLUMN_WIDTH * COLUMN_STEP)).ceil() * COLUMN_STEP;
+    columns.clamp(COLUMN_STEP, MOST_COLUMNS) as usize
+}
+
+/// The number of panels: one per incidence that is visible in any sample.
+fn panel_count(state: &State) -> usize {
+    let visible = state.visible();
+    let mut psi: Vec<f64> = visible.flat_map(|s| s.scan().visible_psi()).collect();
     psi.sort_by(f64::total_cmp);
-    psi.dedup_by(|b, a| (*b - *a).to_degrees() < 0.05);
+    psi.dedup_by(|b, a| cartesian::is_same_incidence(*a, *b));
     psi.len()
 }
 
-/// The curves of all samples that are shown.
-fn drawn<'a>(ui: &Ui, state: &'a State) -> Vec<Drawn<'a>> {
+/// The curves of all visible samples.
+fn drawn_curves<'a>(ui: &Ui, state: &'a State) -> Vec<DrawnCurve<'a>> {
     let ground = theme::ground(ui.ctx());
     let mut all = Vec::new();
     for sample in state.visible() {
-        let curves = state.shown.curves(sample.scan_id());
+        let curves = state.derived.curves(sample.scan_id());
         let family = state.family_of(sample);
         for (i, curve) in curves.iter().enumerate() {
-            all.push(Drawn {
+            all.push(DrawnCurve {
                 curve,
                 sample: &sample.name,
                 colour: theme::colour(family, i, curves.len(), ground),
@@ -97,14 +98,4 @@ fn drawn<'a>(ui: &Ui, state: &'a State) -> Vec<Drawn<'a>> {
         }
     }
     all
-}
-
-/// The id of a plot. Each way of looking has its own, with its own zoom.
-pub fn id(state: &State, name: &str) -> Id {
-    Id::unique((name, state.view.scale as u8, state.view.quantity as u8))
-}
-
-/// The title of an incidence.
-pub fn title(psi: f64) -> String {
-    format!("psi = {}", degrees(psi))
 }

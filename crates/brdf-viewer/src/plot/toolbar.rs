@@ -1,4 +1,4 @@
-//! How the data are looked at: the line above the plot.
+//! The toolbar above the plot: layout, axes, plane, and readings that are not shown.
 
 use brdf_fit::format::counted;
 use brdf_fit::plot::{Layout, Scale};
@@ -9,48 +9,53 @@ use crate::intent::{Command, Intent};
 use crate::state::State;
 use crate::widgets::{choose, degrees, named};
 
-/// Draws the line, and below it what the plot cannot show.
-pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+/// Draws the toolbar, and below it a note on readings that are not shown.
+pub(super) fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.horizontal_wrapped(|ui| {
-        // Two lines shall do beside both panels in the smallest window.
+        // Narrow spacing, so that two lines suffice between both panels in the smallest window.
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.spacing_mut().button_padding.x = 3.0;
-        for (command, name) in [
-            (Command::Together, "Together"),
-            (Command::Panels, "Panels"),
-            (Command::Polar, "Polar"),
-        ] {
-            let on = state.is_on(command) == Some(true);
-            if ui
-                .selectable_label(on, name)
-                .on_hover_text(command.name())
-                .clicked()
-            {
-                intents.push(Intent::Do(command));
-            }
-        }
-        let cartesian = state.view.layout != Layout::Polar;
-        for (command, name) in [
-            (Command::Logarithmic, "log"),
-            (Command::TimesCosine, "× cos θ"),
-            (Command::Residuals, "residuals"),
-        ] {
-            let mut on = state.is_on(command) == Some(true);
-            let possible = cartesian || command == Command::TimesCosine;
-            let box_ = ui.add_enabled(possible, Checkbox::new(&mut on, name));
-            if box_.on_hover_text(command.name()).changed() {
-                intents.push(Intent::Do(command));
-            }
-        }
+        show_layouts(ui, state, intents);
+        show_options(ui, state, intents);
         show_side(ui, state, intents);
         show_planes(ui, state, intents);
         if ui.button("Reset zoom").clicked() {
-            intents.push(Intent::Do(Command::ResetZoom));
+            intents.push(Intent::Command(Command::ResetZoom));
         }
     });
-    let left_out = left_out(state);
-    if !left_out.is_empty() {
-        ui.weak(left_out);
+    let note = not_shown(state);
+    if !note.is_empty() {
+        ui.weak(note);
+    }
+}
+
+fn show_layouts(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    for (command, name) in [
+        (Command::Together, "Together"),
+        (Command::Panels, "Panels"),
+        (Command::Polar, "Polar"),
+    ] {
+        let on = state.is_on(command) == Some(true);
+        let label = ui.selectable_label(on, name);
+        if label.on_hover_text(command.name()).clicked() {
+            intents.push(Intent::Command(command));
+        }
+    }
+}
+
+fn show_options(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    let is_cartesian = state.view.layout != Layout::Polar;
+    for (command, name) in [
+        (Command::Logarithmic, "log"),
+        (Command::TimesCosine, "× cos θ"),
+        (Command::Residuals, "residuals"),
+    ] {
+        let mut on = state.is_on(command) == Some(true);
+        let enabled = is_cartesian || command == Command::TimesCosine;
+        let check_box = ui.add_enabled(enabled, Checkbox::new(&mut on, name));
+        if check_box.on_hover_text(command.name()).changed() {
+            intents.push(Intent::Command(command));
+        }
     }
 }
 
@@ -69,7 +74,7 @@ fn show_side(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     }
 }
 
-/// The planes of view, where there are others than that of incidence.
+/// The planes of view, if there are others than the plane of incidence.
 fn show_planes(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     let Some(sample) = state.active_sample() else {
         return;
@@ -79,8 +84,8 @@ fn show_planes(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         return;
     }
     let name = |azimuth: &f64| {
-        let other = degrees(azimuth + std::f64::consts::PI);
-        format!("phi = {} / {other}", degrees(*azimuth))
+        let opposite = degrees(azimuth + std::f64::consts::PI);
+        format!("phi = {} / {opposite}", degrees(*azimuth))
     };
     let mut view = state.view;
     let combo = ComboBox::from_id_salt("plane").width(130.0);
@@ -92,54 +97,63 @@ fn show_planes(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     }
 }
 
-/// What of the readings the plot does not show, in words.
-fn left_out(state: &State) -> String {
-    let (mut drawn, mut in_plane, mut all) = (0, 0, 0);
-    let (mut not_positive, mut negative) = (0, 0);
-    for sample in state.visible() {
-        if let Some(selection) = state.shown.selection(sample.scan_id()) {
-            drawn += selection.shown();
-            in_plane += selection.all();
-            not_positive += selection.not_positive();
-            negative += selection.negative();
+/// Numbers of readings of the visible incidences.
+#[derive(Default)]
+struct Counts {
+    all: usize,
+    in_plane: usize,
+    drawn: usize,
+    not_positive: usize,
+    negative: usize,
+}
+
+impl Counts {
+    fn new(state: &State) -> Self {
+        let mut counts = Self::default();
+        for sample in state.visible() {
+            if let Some(selection) = state.derived.selection(sample.scan_id()) {
+                counts.drawn += selection.shown();
+                counts.in_plane += selection.all();
+                counts.not_positive += selection.not_positive();
+                counts.negative += selection.negative();
+            }
+            let visible = sample.scan().incidences.iter().filter(|i| i.visible);
+            counts.all += visible.map(|i| i.readings).sum::<usize>();
         }
-        let shown = sample.scan().incidences.iter().filter(|i| i.shown);
-        all += shown.map(|i| i.readings).sum::<usize>();
+        counts
     }
-    let mut words = Vec::new();
-    let mut tell = |count: usize, what: String| {
-        if count > 0 {
-            words.push(what);
-        }
+}
+
+/// The numbers of readings that the plot does not show, and why; empty if it shows all of them.
+fn not_shown(state: &State) -> String {
+    let counts = Counts::new(state);
+    let mut notes = Vec::new();
+    let outside = counts.all.saturating_sub(counts.in_plane);
+    if outside > 0 {
+        notes.push(format!(
+            "{} outside this plane",
+            counted(outside, "reading")
+        ));
+    }
+    let Counts {
+        drawn, in_plane, ..
+    } = counts;
+    if drawn < in_plane {
+        notes.push(format!(
+            "{drawn} of {in_plane} readings drawn: the first, lowest and highest in each column of \
+             the plot"
+        ));
+    }
+    let (count, reason) = match (state.view.layout, state.view.scale) {
+        (Layout::Polar, _) => (counts.negative, "< 0 cannot be shown as a radius"),
+        (_, Scale::Logarithmic) => (
+            counts.not_positive,
+            "<= 0 cannot be shown on a logarithmic axis",
+        ),
+        (_, Scale::Linear) => (0, ""),
     };
-    let out = all.saturating_sub(in_plane);
-    tell(
-        out,
-        format!("{} out of this plane", counted(out, "reading")),
-    );
-    tell(
-        in_plane - drawn,
-        format!(
-            "{drawn} of {in_plane} readings drawn: the first, lowest and highest of each column of \
-             points"
-        ),
-    );
-    match (state.view.layout, state.view.scale) {
-        (Layout::Polar, _) => tell(
-            negative,
-            format!(
-                "{} < 0 cannot be shown as a radius",
-                counted(negative, "reading")
-            ),
-        ),
-        (_, Scale::Logarithmic) => tell(
-            not_positive,
-            format!(
-                "{} <= 0 cannot be shown on a logarithmic axis",
-                counted(not_positive, "reading")
-            ),
-        ),
-        (_, Scale::Linear) => {}
+    if count > 0 {
+        notes.push(format!("{} {reason}", counted(count, "reading")));
     }
-    words.join("; ")
+    notes.join("; ")
 }

@@ -1,11 +1,11 @@
-//! The samples that are always at hand: the project's measured ones, and Table 1 of the paper.
+//! The built-in samples: measured ones of the project, and Table 1 of the paper.
 
 use brdf_core::published::PUBLISHED;
 use brdf_fit::Measurements;
 use brdf_fit::read::ReadError;
+use brdf_fit::scan::Convention;
 
-use super::sample::{Scan, published_name};
-use crate::job::Opened;
+use super::sample::{Opened, Scan, published_name};
 
 macro_rules! measured {
     ($name:literal) => {
@@ -15,7 +15,7 @@ macro_rules! measured {
         )
     };
 }
-/// The measured samples: where they stand in the project, and their text.
+/// The measured samples: their paths in the project, and their content.
 const MEASURED: [(&str, &str); 4] = [
     measured!("z307_on_aluminium.csv"),
     measured!("z307_on_aluminium_cycled.csv"),
@@ -23,12 +23,12 @@ const MEASURED: [(&str, &str); 4] = [
     measured!("titanium_anodise.csv"),
 ];
 
-/// An entry of the menu.
+/// An entry of the built-in menu.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuiltIn {
-    /// Its name in the menu.
+    /// The name in the menu.
     pub name: String,
-    /// Whether it was measured; the others are theory alone.
+    /// Whether the sample has readings; otherwise it has only a theory.
     pub measured: bool,
 }
 
@@ -45,23 +45,23 @@ pub fn entries() -> Vec<BuiltIn> {
     measured.chain(published).collect()
 }
 
-/// The scans of an entry; `None` where there is none of this number.
+/// Opens an entry; `None` if there is no entry of this index.
 pub fn open(entry: usize) -> Option<Result<Opened, ReadError>> {
     if let Some((path, text)) = MEASURED.get(entry) {
-        return Some(scans(path, text));
+        return Some(measured(path, text));
     }
     let row = PUBLISHED.get(entry - MEASURED.len())?;
     Some(Ok(opened(published_name(row), vec![Scan::published(row)])))
 }
 
-/// The entry whose source this is.
+/// The index of the entry with a source.
 pub fn entry_of(source: &str) -> Option<usize> {
     let measured = MEASURED.iter().map(|(path, _)| (*path).to_owned());
     let published = PUBLISHED.iter().map(published_name);
     measured.chain(published).position(|known| known == source)
 }
 
-/// The text of the measured sample that a fit names, where it is one of these.
+/// The content of the measured sample with a source.
 pub fn text_of(source: &str) -> Option<&'static str> {
     let found = MEASURED.iter().find(|(path, _)| *path == source);
     found.map(|(_, text)| *text)
@@ -75,8 +75,8 @@ fn opened(source: String, scans: Vec<Scan>) -> Opened {
     }
 }
 
-fn scans(path: &str, text: &str) -> Result<Opened, ReadError> {
-    let convention = brdf_fit::scan::Convention::default();
+fn measured(path: &str, text: &str) -> Result<Opened, ReadError> {
+    let convention = Convention::default();
     let all = Measurements::from_reader_with(text.as_bytes(), path, convention)?;
     let scans = all.by_wavelength().into_iter().map(Scan::new);
     Ok(opened(path.to_owned(), scans.collect()))

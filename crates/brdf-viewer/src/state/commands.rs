@@ -1,12 +1,14 @@
-//! The commands: what each does, when it can be done, and whether what it switches is on.
+//! The commands: their effects, when they are enabled, and the state of those that toggle something.
 
 use brdf_fit::plot::{Layout, Quantity, Scale};
 
-use super::fitting::{Scope, Stages};
+use super::fit_settings::{Scope, Stages};
+use super::id::SampleId;
 use super::interface::Dialog;
-use super::sample::{Sample, SampleId};
+use super::sample::Sample;
 use super::{Effect, State};
-use crate::intent::{Command, Export};
+use crate::intent::Command;
+use crate::output_kind::OutputKind;
 
 impl State {
     pub(super) fn command(&mut self, command: Command) {
@@ -27,9 +29,9 @@ impl State {
                     self.close(id);
                 }
             }
-            Command::Export(what) => {
-                let path = self.suggested(what);
-                self.effects.push(Effect::AskExport(what, path));
+            Command::Export(kind) => {
+                let path = self.suggested_path(kind);
+                self.effects.push(Effect::AskExport(kind, path));
             }
             Command::CopyParameters => self.copy_parameters(),
             Command::Quit => self.effects.push(Effect::Quit),
@@ -40,12 +42,12 @@ impl State {
             Command::FitAll => self.fit(Stages::Both, Scope::All),
             Command::Cancel => self.cancel(),
             Command::About => self.dialog = Some(Dialog::About),
-            view => self.switch(view),
+            view => self.change_view(view),
         }
     }
 
-    /// Carries out a command that changes how things are looked at.
-    fn switch(&mut self, command: Command) {
+    /// Carries out a command that changes the view or the window.
+    fn change_view(&mut self, command: Command) {
         match command {
             Command::Logarithmic => {
                 self.view.scale = match self.view.scale {
@@ -73,21 +75,23 @@ impl State {
         }
     }
 
-    /// Whether a command can be carried out now.
+    /// Whether a command is enabled.
     pub fn is_enabled(&self, command: Command) -> bool {
         let active = self.active_sample();
         let scan = active.map(Sample::scan);
         match command {
-            Command::Close | Command::CopyParameters | Command::Export(Export::Curves) => {
+            Command::Close | Command::CopyParameters | Command::Export(OutputKind::Curves) => {
                 active.is_some()
             }
             Command::CloseAll => !self.samples.is_empty(),
-            Command::Export(Export::Figure(_)) => self.visible().next().is_some(),
-            Command::Export(Export::Fit) => active.is_some_and(Sample::is_fitted),
+            Command::Export(OutputKind::Figure(_)) => self.visible().next().is_some(),
+            Command::Export(OutputKind::Fit) => active.is_some_and(Sample::is_fitted),
             Command::Undo => self.history.can_undo(),
             Command::Redo => self.history.can_redo(),
-            Command::ResetAll => scan.is_some_and(|scan| scan.fitted_knobs() != scan.knobs),
-            Command::Fit => !self.is_fitting() && scan.is_some_and(|scan| scan.readings() > 0),
+            Command::ResetAll => {
+                scan.is_some_and(|scan| scan.fitted_parameters() != scan.parameters)
+            }
+            Command::Fit => !self.is_fitting() && scan.is_some_and(|scan| scan.reading_count() > 0),
             Command::FitAll => !self.is_fitting() && !self.scans_to_fit(Scope::All).is_empty(),
             Command::Cancel => self.is_fitting(),
             Command::Residuals => self.view.layout != Layout::Polar,
@@ -95,7 +99,7 @@ impl State {
         }
     }
 
-    /// Whether a command that switches something is on; `None` where it switches nothing.
+    /// Whether the option that a command controls is on; `None` if it controls none.
     pub fn is_on(&self, command: Command) -> Option<bool> {
         Some(match command {
             Command::Logarithmic => self.view.scale == Scale::Logarithmic,
@@ -113,7 +117,7 @@ impl State {
         })
     }
 
-    /// Whether the window is dark: as the user chose, or else as the system says.
+    /// Whether the theme is dark, by the choice of the user or else of the system.
     fn is_dark(&self) -> bool {
         self.interface.dark.unwrap_or(self.system_dark)
     }

@@ -1,4 +1,4 @@
-//! What is written, and the dialogs that ask for a path.
+//! Writing of files, and the dialogs that ask for a path.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,21 +8,57 @@ use brdf_fit::output::resolved;
 use super::interface::Dialog;
 use super::sample::Sample;
 use super::{Effect, State};
-use crate::intent::Export;
-use crate::job::{Job, Layer, Writing};
+use crate::job::{FigureLayer, FileJob, Job, Output};
+use crate::output_kind::OutputKind;
+
+/// Why a file is not written.
+#[derive(Debug, thiserror::Error)]
+enum ExportError {
+    /// The file is an open scan.
+    #[error("{}: is an open scan: expected a different file for the {}", .0.display(), .1.name())]
+    OpenScan(PathBuf, OutputKind),
+    /// The file is the fit from which open samples were read.
+    #[error(
+        "{}: is the fit of open samples: expected a different file for the {}",
+        .0.display(), .1.name()
+    )]
+    OpenFit(PathBuf, OutputKind),
+    /// The file contains fits of samples that were closed.
+    #[error(
+        "{}: contains the fits of {total} scans, of which {open} are open: expected a different \
+         file for the {}",
+        path.display(), kind.name()
+    )]
+    ClosedFits {
+        path: PathBuf,
+        kind: OutputKind,
+        total: usize,
+        open: usize,
+    },
+    #[error("no sample is open")]
+    NoSample,
+    #[error("the figure would be empty: no incidence is selected")]
+    EmptyFigure,
+}
 
 impl State {
-    /// Asks for a path in the viewer's own box, where the system has no dialog.
+    /// Asks for the path of a file to open in the viewer's own dialog.
     pub fn ask_path(&mut self) {
         self.dialog = Some(Dialog::Open {
             path: String::new(),
         });
     }
 
-    /// Asks where to write in the viewer's own box.
-    pub fn ask_export(&mut self, what: Export, path: &Path) {
+    /// Asks for the path of a file to write in the viewer's own dialog, and suggests one.
+    pub fn ask_export(&mut self, kind: OutputKind, path: &Path) {
         let path = path.display().to_string();
-        self.dialog = Some(Dialog::Export { what, path });
+        self.dialog = Some(Dialog::Export { kind, path });
+    }
+
+    pub(super) fn set_path(&mut self, text: String) {
+        if let Some(Dialog::Open { path } | Dialog::Export { path, .. }) = &mut self.dialog {
+            *path = text;
+        }
     }
 
     pub(super) fn confirm(&mut self) {
@@ -30,98 +66,107 @@ impl State {
             Some(Dialog::Open { path }) if !path.trim().is_empty() => {
                 self.open(vec![PathBuf::from(path.trim())]);
             }
-            Some(Dialog::Export { what, path }) if !path.trim().is_empty() => {
-                self.write(what, PathBuf::from(path.trim()));
+            Some(Dialog::Export { kind, path }) if !path.trim().is_empty() => {
+                self.write(kind, PathBuf::from(path.trim()));
             }
             Some(Dialog::About) | None => {}
-            empty => self.dialog = empty,
+            without_path => self.dialog = without_path,
         }
     }
 
     pub(super) fn browse(&mut self) {
         match self.dialog.take() {
             Some(Dialog::Open { .. }) => self.effects.push(Effect::AskOpen),
-            Some(Dialog::Export { what, path }) => {
+            Some(Dialog::Export { kind, path }) => {
                 let path = PathBuf::from(path);
-                self.effects.push(Effect::AskExport(what, path));
+                self.effects.push(Effect::AskExport(kind, path));
             }
             other => self.dialog = other,
         }
     }
 
-    /// The name of a file for what is written of the active sample.
-    pub(super) fn suggested(&self, what: Export) -> PathBuf {
+    /// A file name for an output of the active sample.
+    pub(super) fn suggested_path(&self, kind: OutputKind) -> PathBuf {
         let Some(sample) = self.active_sample() else {
             return PathBuf::new();
         };
         let wavelength = sample.scan().wavelength_um();
         let wavelength = wavelength.map_or_else(String::new, |w| format!("_{w}um"));
-        let allowed = |c: char| c.is_alphanumeric() || "._-".contains(c);
+        let is_allowed = |c: char| c.is_alphanumeric() || "._-".contains(c);
         let name: String = format!("{}{wavelength}", sample.name)
             .chars()
-            .map(|c| if allowed(c) { c } else { '_' })
+            .map(|c| if is_allowed(c) { c } else { '_' })
             .collect();
-        PathBuf::from(format!("{name}.{}", what.extension()))
+        PathBuf::from(format!("{name}.{}", kind.extension()))
     }
 
-    pub(super) fn write(&mut self, what: Export, path: PathBuf) {
-        let writing = match self.refusal(what, &path) {
-            None => self.writing(what, &path),
-            Some(refusal) => Err(refusal),
-        };
-        match writing {
-            Ok(writing) => self.start(Job::Write(path, writing)),
-            Err(words) => self.print_error(words),
+    pub(super) fn write(&mut self, kind: OutputKind, path: PathBuf) {
+        let output = self.check_target(kind, &path);
+        match output.and_then(|()| self.output(kind, &path)) {
+            Ok(output) => self.start(Job::File(FileJob::Write(path, output))),
+            Err(error) => self.report_error(error.to_string()),
         }
     }
 
-    /// Why something shall not be written to a path: it would destroy what is open.
-    fn refusal(&self, what: Export, path: &Path) -> Option<String> {
+    /// Refuses a path where data of open samples would be lost.
+    fn check_target(&self, kind: OutputKind, path: &Path) -> Result<(), ExportError> {
         let target = resolved(path);
-        let own = format!("expected a file of its own for the {}", what.name());
-        let shown = path.display();
-        if self.samples.iter().any(|sample| sample.is_scan_at(&target)) {
-            return Some(format!("{shown}: is an open scan: {own}"));
+        let path = path.to_owned();
+        let mut samples = self.samples.iter();
+        if samples.any(|sample| sample.has_readings_from(&target)) {
+            return Err(ExportError::OpenScan(path, kind));
         }
-        let of_document = || self.samples.iter().filter(|s| s.is_from(&target));
-        let siblings = of_document().next()?.siblings;
-        let open = of_document().count();
-        let active = self.active_sample().is_some_and(|s| s.is_from(&target));
-        if what != Export::Fit || !active {
-            Some(format!("{shown}: is the fit of open samples: {own}"))
-        } else if open < siblings {
-            let of = format!("holds the fits of {siblings} scans, of which {open} are open");
-            Some(format!("{shown}: {of}: {own}"))
+        let of_document = || self.samples.iter().filter(|s| s.was_opened_from(&target));
+        let Some(first) = of_document().next() else {
+            return Ok(());
+        };
+        let (total, open) = (first.samples_in_source, of_document().count());
+        let active = self.active_sample();
+        let is_own_fit = active.is_some_and(|s| s.was_opened_from(&target));
+        if kind != OutputKind::Fit || !is_own_fit {
+            Err(ExportError::OpenFit(path, kind))
+        } else if open < total {
+            Err(ExportError::ClosedFits {
+                path,
+                kind,
+                total,
+                open,
+            })
         } else {
-            None
+            Ok(())
         }
     }
 
-    fn writing(&self, what: Export, path: &Path) -> Result<Writing, String> {
-        let sample = self.active_sample().ok_or("no sample is open")?;
-        Ok(match what {
-            Export::Figure(picture) => {
-                let layers: Vec<Layer> = self
+    fn output(&self, kind: OutputKind, path: &Path) -> Result<Output, ExportError> {
+        let sample = self.active_sample().ok_or(ExportError::NoSample)?;
+        Ok(match kind {
+            OutputKind::Figure(format) => {
+                let layers: Vec<FigureLayer> = self
                     .visible()
-                    .map(|sample| Layer::of(sample, self.family_of(sample)))
+                    .map(|sample| FigureLayer::new(sample, self.family_of(sample)))
                     .collect();
                 if layers.iter().all(|layer| layer.incidences.is_empty()) {
-                    return Err("the figure would be empty: no incidence is chosen".to_owned());
+                    return Err(ExportError::EmptyFigure);
                 }
-                Writing::Figure(picture, layers, self.view)
+                Output::Figure(format, layers, self.view)
             }
-            Export::Curves => {
+            OutputKind::Curves => {
                 let scan = sample.scan();
                 let psi = scan.incidences.iter().map(|incidence| incidence.psi);
-                Writing::Curves(Arc::clone(&scan.measurements), scan.knobs, psi.collect())
+                Output::Curves(
+                    Arc::clone(&scan.measurements),
+                    scan.parameters,
+                    psi.collect(),
+                )
             }
-            Export::Fit => {
+            OutputKind::Fit => {
                 let target = resolved(path);
-                // The document that a sample is from keeps the fits of the others in it.
+                // If the target is the document of the sample, the fits of the other samples from
+                // this document are written as well.
                 let samples = self.samples.iter();
-                let samples = samples.filter(|s| s.id == sample.id || s.is_from(&target));
+                let samples = samples.filter(|s| s.id == sample.id || s.was_opened_from(&target));
                 let scans = samples.flat_map(|sample: &Sample| &sample.scans);
-                Writing::Fit(scans.filter_map(|scan| scan.fitted.clone()).collect())
+                Output::Fit(scans.filter_map(|scan| scan.last_fit.clone()).collect())
             }
         })
     }

@@ -1,22 +1,23 @@
-//! Undo and redo of what was turned.
+//! Undo and redo of parameter changes.
 
-use super::sample::{Knobs, SampleId, ScanId};
+use super::id::{SampleId, ScanId};
+use super::parameters::EditedParameters;
 
-/// So many changes can be taken back.
-const MOST: usize = 1000;
+/// The largest number of undo steps.
+const MOST_STEPS: usize = 1000;
 
-/// One finished change of the parameters of a scan.
+/// A finished change of the parameters of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
     /// The scan.
     pub scan: ScanId,
-    /// The parameters before it.
-    pub before: Knobs,
-    /// The parameters after it.
-    pub after: Knobs,
+    /// The parameters before the change.
+    pub before: EditedParameters,
+    /// The parameters after the change.
+    pub after: EditedParameters,
 }
 
-/// The changes that were made, and those that were taken back.
+/// The changes that can be undone and redone. A step may change several scans.
 #[derive(Debug, Clone, Default)]
 pub struct History {
     past: Vec<Vec<Change>>,
@@ -24,49 +25,48 @@ pub struct History {
 }
 
 impl History {
-    /// Remembers changes that were made as one. What was taken back before can no longer be done
-    /// again.
+    /// Adds a step, unless it is empty. Changes that were undone can then no longer be redone.
     pub fn push(&mut self, changes: Vec<Change>) {
         if changes.is_empty() {
             return;
         }
         self.future.clear();
         self.past.push(changes);
-        if self.past.len() > MOST {
+        if self.past.len() > MOST_STEPS {
             self.past.remove(0);
         }
     }
 
-    /// The changes to take back.
+    /// Moves the last step to those that can be redone, and returns its changes.
     pub fn undo(&mut self) -> Option<Vec<Change>> {
         let changes = self.past.pop()?;
         self.future.push(changes.clone());
         Some(changes)
     }
 
-    /// The changes to do again.
+    /// Moves the step that was undone last back to the past, and returns its changes.
     pub fn redo(&mut self) -> Option<Vec<Change>> {
         let changes = self.future.pop()?;
         self.past.push(changes.clone());
         Some(changes)
     }
 
-    /// Forgets the changes of a sample that is closed.
-    pub fn forget(&mut self, sample: SampleId) {
-        for side in [&mut self.past, &mut self.future] {
-            for changes in side.iter_mut() {
+    /// Removes the changes of a closed sample.
+    pub fn remove_sample(&mut self, sample: SampleId) {
+        for steps in [&mut self.past, &mut self.future] {
+            for changes in steps.iter_mut() {
                 changes.retain(|change| change.scan.sample != sample);
             }
-            side.retain(|changes| !changes.is_empty());
+            steps.retain(|changes| !changes.is_empty());
         }
     }
 
-    /// Whether there is a change to take back.
+    /// Whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    /// Whether there is a change to do again.
+    /// Whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }

@@ -1,10 +1,10 @@
-//! What of the window is shown, and what it asks.
+//! The visible panels, the open dialog and the messages.
 
 use serde::{Deserialize, Serialize};
 
-use crate::intent::Export;
+use crate::output_kind::OutputKind;
 
-/// A table or a picture of the results.
+/// A tab of the results.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ResultTab {
@@ -15,12 +15,12 @@ pub enum ResultTab {
     Convergence,
     /// The profile of E over k1.
     Profile,
-    /// Hemispherical reflectance.
+    /// The hemispherical reflectance.
     Reflectance,
 }
 
 impl ResultTab {
-    /// All of them.
+    /// All tabs.
     pub const ALL: [Self; 4] = [
         Self::Tables,
         Self::Convergence,
@@ -28,12 +28,12 @@ impl ResultTab {
         Self::Reflectance,
     ];
 
-    /// Whether it follows the parameters as they are turned; the others are of the last fit.
-    pub fn follows(self) -> bool {
+    /// Whether the tab depends on the current parameters, and not only on the last fit.
+    pub fn shows_current_parameters(self) -> bool {
         matches!(self, Self::Profile | Self::Reflectance)
     }
 
-    /// Its name.
+    /// The title.
     pub fn name(self) -> &'static str {
         match self {
             Self::Tables => "Tables",
@@ -44,19 +44,19 @@ impl ResultTab {
     }
 }
 
-/// What of the window is shown.
+/// The theme and the visible panels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Interface {
-    /// Dark or light; `None` is what the system says.
+    /// Whether the theme is dark; `None` follows the system.
     pub dark: Option<bool>,
-    /// Whether the samples are shown.
+    /// Whether the samples panel is visible.
     pub samples: bool,
-    /// Whether the parameters are shown.
+    /// Whether the parameters panel is visible.
     pub parameters: bool,
-    /// Whether the results are shown.
+    /// Whether the results panel is visible.
     pub results: bool,
-    /// What of the results.
+    /// The selected tab of the results.
     pub tab: ResultTab,
 }
 
@@ -72,39 +72,39 @@ impl Default for Interface {
     }
 }
 
-/// The dialog that is open.
+/// The open dialog.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Dialog {
-    /// The path of a file to open.
+    /// Asks for the path of a file to open.
     Open {
-        /// The path so far.
+        /// The path as entered so far.
         path: String,
     },
-    /// The path of a file to write.
+    /// Asks for the path of a file to write.
     Export {
-        /// What to write.
-        what: Export,
-        /// The path so far.
+        /// The kind of the file.
+        kind: OutputKind,
+        /// The path as entered so far.
         path: String,
     },
-    /// What this is, and the keys.
+    /// Shows the version and the keys.
     About,
 }
 
-/// How bad a message is.
+/// The severity of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
-    /// Something did not work.
+    /// An operation failed.
     Error,
-    /// Something to know.
+    /// Information that needs no action.
     Note,
 }
 
-/// Something that the user is told.
+/// A message to the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// How bad it is.
+    /// The severity.
     pub severity: Severity,
-    /// The words.
+    /// The text.
     pub text: String,
 }

@@ -1,94 +1,103 @@
-//! What is opened and closed.
+//! Opening and closing of samples.
 
 use std::path::{Path, PathBuf};
 
-use super::sample::{Sample, SampleId};
+use super::id::SampleId;
+use super::sample::{Opened, Sample};
 use super::saved::{MOST_RECENT, Reopened};
 use super::{State, built_in};
-use crate::job::{Job, Opened};
+use crate::job::{FileJob, Job};
 
 impl State {
-    /// Opens files. They keep their whole path: the next start may be in another folder.
+    /// Opens files. Their paths are made absolute, because the next session may start in another
+    /// folder.
     pub(super) fn open(&mut self, paths: Vec<PathBuf>) {
         for path in paths {
             let path = std::path::absolute(&path).unwrap_or(path);
-            self.start(Job::Read(path, self.convention));
+            self.start(Job::File(FileJob::Open(path, self.convention)));
         }
+    }
+
+    pub(super) fn open_bytes(&mut self, name: String, bytes: Vec<u8>) {
+        let job = FileJob::OpenBytes(name, bytes, self.convention);
+        self.start(Job::File(job));
     }
 
     pub(super) fn open_built_in(&mut self, entry: usize) {
         match built_in::open(entry) {
             Some(Ok(opened)) => self.add(opened, 1),
-            Some(Err(error)) => self.print_error(error.to_string()),
+            Some(Err(error)) => self.report_error(error.to_string()),
             None => {}
         }
     }
 
-    /// Opens what was open the last time, under the name and in the convention that it then had.
-    pub fn reopen(&mut self, opened: &Reopened) {
-        match built_in::entry_of(&opened.source) {
-            Some(entry) => self.open_built_in(entry),
-            None => self.start(Job::Read(PathBuf::from(&opened.source), opened.convention)),
+    /// Opens a source of the last session, in the same angular convention.
+    pub fn reopen(&mut self, source: &Reopened) {
+        if let Some(entry) = built_in::entry_of(&source.source) {
+            self.open_built_in(entry);
+        } else {
+            let path = PathBuf::from(&source.source);
+            self.start(Job::File(FileJob::Open(path, source.convention)));
         }
     }
 
-    /// Takes over what was opened from a source.
-    pub(super) fn opened(&mut self, file: Option<PathBuf>, all: Vec<Opened>) {
-        let siblings = all.len();
+    /// Adds the samples of a source. `file` is its path, if it is a file.
+    pub(super) fn add_opened(&mut self, file: Option<PathBuf>, all: Vec<Opened>) {
+        let count = all.len();
         for opened in all {
-            self.add(opened, siblings);
+            self.add(opened, count);
         }
         if let Some(path) = file {
-            self.remember(path);
+            self.add_to_recent(path);
         }
     }
 
-    fn add(&mut self, opened: Opened, siblings: usize) {
+    fn add(&mut self, opened: Opened, samples_in_source: usize) {
         if opened.scans.is_empty() {
             return;
         }
         let id = SampleId(self.next_id);
         self.next_id += 1;
-        let taken = |family: &usize| self.samples.iter().any(|s| s.family == *family);
-        // Of so many one more than there are samples, one is free.
-        let family = (0..=self.samples.len()).find(|family| !taken(family));
+        let is_taken = |family: &usize| self.samples.iter().any(|s| s.family == *family);
+        // With one more family than samples, one is free.
+        let family = (0..=self.samples.len()).find(|family| !is_taken(family));
         self.status = format!("{} opened", opened.source);
-        let mut sample = Sample::new(id, opened, family.unwrap_or(0), siblings);
-        sample.name = self.own_name(&sample.name);
+        let mut sample = Sample::new(id, opened, family.unwrap_or(0), samples_in_source);
+        sample.name = self.unique_name(&sample.name);
         self.samples.push(sample);
         self.zoom_resets += 1;
         self.activate(id);
     }
 
     /// A name that no other sample has: "a", "a (2)".
-    fn own_name(&self, name: &str) -> String {
-        let taken = |name: &String| self.samples.iter().any(|sample| sample.name == *name);
+    fn unique_name(&self, name: &str) -> String {
+        let is_taken = |name: &String| self.samples.iter().any(|sample| sample.name == *name);
         let numbered = (2..).map(|number| format!("{name} ({number})"));
         let mut names = std::iter::once(name.to_owned()).chain(numbered);
-        names.find(|name| !taken(name)).unwrap_or_default()
+        names.find(|name| !is_taken(name)).unwrap_or_default()
     }
 
     pub(super) fn close(&mut self, id: SampleId) {
-        if let Some(run) = &mut self.run {
-            run.leave_out(id);
+        if let Some(run) = &mut self.fit_run {
+            run.remove_sample(id);
         }
         self.samples.retain(|sample| sample.id != id);
-        self.history.forget(id);
+        self.history.remove_sample(id);
         if self.active == Some(id) {
             self.active = self.samples.last().map(|sample| sample.id);
         }
     }
 
-    fn remember(&mut self, path: PathBuf) {
+    fn add_to_recent(&mut self, path: PathBuf) {
         self.recent.retain(|known| *known != path);
         self.recent.insert(0, path);
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// Whether a path leads to something that is open: a scan, or the fit that it came with.
+    /// Whether a path leads to an open scan, or to the fit that contains it.
     pub fn is_open(&self, path: &Path) -> bool {
-        let target = brdf_fit::output::resolved(path);
+        let path = brdf_fit::output::resolved(path);
         let mut samples = self.samples.iter();
-        samples.any(|sample| sample.is_scan_at(&target) || sample.is_from(&target))
+        samples.any(|sample| sample.has_readings_from(&path) || sample.was_opened_from(&path))
     }
 }

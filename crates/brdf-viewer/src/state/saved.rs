@@ -1,65 +1,66 @@
-//! What is kept between two starts.
+//! The settings saved between sessions.
 
 use std::path::{Path, PathBuf};
 
-use brdf_fit::output::write_file;
+use brdf_fit::output::{WriteError, write_file};
 use brdf_fit::plot::View;
 use brdf_fit::scan::Convention;
 use serde::{Deserialize, Serialize};
 
-use super::fitting::FitChoice;
+use super::fit_settings::FitSettings;
 use super::interface::Interface;
 use super::sample::Sample;
 
-/// Version of the file.
+/// Version of the file format.
 const VERSION: u32 = 1;
 
-/// So many recent files are kept.
+/// The largest number of recent files.
 pub const MOST_RECENT: usize = 10;
 
-/// The smallest window that everything fits into, in points.
+/// The smallest window into which all panels fit, in points.
 pub const SMALLEST_WINDOW: [f32; 2] = [900.0, 600.0];
 
-/// A window is not larger than this, in points.
+/// The largest side of a window, in points.
 const LARGEST_WINDOW: f32 = 16_384.0;
 
-/// What is kept between two starts.
+/// The settings saved between sessions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
-    /// Version of the file.
+    /// Version of the file format.
     pub version: u32,
-    /// How the data are looked at.
+    /// The view of the data.
     pub view: View,
-    /// What of the window is shown.
+    /// The theme and the visible panels.
     pub interface: Interface,
     /// The angular convention in which files are read.
     pub convention: Convention,
-    /// The settings of the fit.
-    pub choice: FitChoice,
-    /// The files that were opened last, the latest first.
+    /// The fit settings.
+    #[serde(rename = "choice")]
+    pub fit_settings: FitSettings,
+    /// The paths of recently opened files, the latest first.
     pub recent: Vec<PathBuf>,
-    /// What was open: files, and entries of the built-in menu.
+    /// The sources of the open samples.
     pub open: Vec<Reopened>,
     /// The size of the window, in points.
     pub window: [f32; 2],
 }
 
-/// Something that was open.
+/// The source of a sample that was open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reopened {
-    /// A file, or an entry of the built-in menu.
+    /// The path of a file, or the name of a built-in sample.
     pub source: String,
-    /// The angular convention of the file.
+    /// The angular convention in which it was read.
     pub convention: Convention,
 }
 
 impl Reopened {
-    /// What samples were opened from, each source once.
+    /// The sources of samples.
     pub fn all(samples: &[Sample]) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for sample in samples {
-            // A fit with several scans is opened once.
-            if sample.siblings > 1 && all.iter().any(|one| one.source == sample.source) {
+            // A fit of several scans is one source.
+            if sample.samples_in_source > 1 && all.iter().any(|one| one.source == sample.source) {
                 continue;
             }
             all.push(Self {
@@ -78,7 +79,7 @@ impl Default for Saved {
             view: View::default(),
             interface: Interface::default(),
             convention: Convention::default(),
-            choice: FitChoice::default(),
+            fit_settings: FitSettings::default(),
             recent: Vec::new(),
             open: Vec::new(),
             window: [1280.0, 800.0],
@@ -86,31 +87,48 @@ impl Default for Saved {
     }
 }
 
-/// What was found of the last time.
+/// The result of reading the settings.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Found {
-    /// Nothing: this is the first start.
-    Nothing,
-    /// What was kept.
-    Kept(Saved),
-    /// A file that cannot be used, and why.
+pub enum ReadResult {
+    /// There is no file, as in the first session.
+    Missing,
+    /// The settings of the last session.
+    Valid(Saved),
+    /// The file cannot be used, and a message for the user.
     Damaged(String),
 }
 
-/// Where the settings are kept, and what was found there.
+/// Why the settings cannot be saved.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SaveError {
+    /// The folder cannot be created.
+    #[error("{}: {error}", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// The error of the system.
+        error: std::io::Error,
+    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// The settings with their file.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// The file; `None` keeps nothing.
+    /// The file; `None` saves nothing.
     pub path: Option<PathBuf>,
-    /// What was found.
+    /// The settings as they were saved last.
     pub saved: Saved,
-    /// What to tell the user of it.
+    /// A message for the user.
     pub note: Option<String>,
 }
 
 impl Settings {
-    /// Settings that are not kept.
-    pub fn unkept() -> Self {
+    /// Default settings that are not saved.
+    pub fn in_memory() -> Self {
         Self {
             path: None,
             saved: Saved::default(),
@@ -118,67 +136,73 @@ impl Settings {
         }
     }
 
-    /// The settings of a file.
-    pub fn of(path: Option<PathBuf>) -> Self {
+    /// Reads the settings of a file, or the default ones if it cannot be used.
+    pub fn load(path: Option<PathBuf>) -> Self {
         let Some(file) = &path else {
-            return Self::unkept();
+            return Self::in_memory();
         };
         let (saved, note) = match Saved::read(file) {
-            Found::Nothing => (Saved::default(), None),
-            Found::Kept(saved) => (saved, None),
-            Found::Damaged(note) => (Saved::default(), Some(note)),
+            ReadResult::Missing => (Saved::default(), None),
+            ReadResult::Valid(saved) => (saved, None),
+            ReadResult::Damaged(note) => (Saved::default(), Some(note)),
         };
         Self { path, saved, note }
     }
 }
 
 impl Saved {
-    /// Reads what was kept. A damaged file is set aside under another name, so that nothing is lost.
-    pub fn read(path: &Path) -> Found {
+    /// Reads a file. A damaged file is renamed, so that its content is not lost.
+    pub fn read(path: &Path) -> ReadResult {
         let text = match std::fs::read_to_string(path) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Nothing,
-            Err(error) => return Found::Damaged(set_aside(path, &error.to_string())),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+                return ReadResult::Missing;
+            }
+            Err(error) => return ReadResult::Damaged(set_aside(path, &error.to_string())),
         };
         match serde_json::from_str::<Self>(&text) {
             Ok(saved) => match saved.problem() {
-                None => Found::Kept(saved),
-                Some(problem) => Found::Damaged(set_aside(path, &problem)),
+                None => ReadResult::Valid(saved),
+                Some(problem) => ReadResult::Damaged(set_aside(path, &problem)),
             },
-            Err(error) => Found::Damaged(set_aside(path, &error.to_string())),
+            Err(error) => ReadResult::Damaged(set_aside(path, &error.to_string())),
         }
     }
 
-    /// Writes it, whole or not at all.
+    /// Writes the settings. The file is replaced only when it is complete.
     ///
-    /// Errors: what the system says.
-    pub fn write(&self, path: &Path) -> Result<(), String> {
+    /// # Errors
+    ///
+    /// The folder cannot be created, or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), SaveError> {
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)
-                .map_err(|error| format!("{}: {error}", folder.display()))?;
+            std::fs::create_dir_all(folder).map_err(|error| SaveError::Folder {
+                folder: folder.to_owned(),
+                error,
+            })?;
         }
         write_file(path, |writer| {
             serde_json::to_writer_pretty(&mut *writer, self)?;
             writer.write_all(b"\n")
-        })
-        .map_err(|error| error.to_string())
+        })?;
+        Ok(())
     }
 
-    /// What of it cannot be.
+    /// A value that is not valid, as text.
     fn problem(&self) -> Option<String> {
         let [width, height] = self.window;
-        let possible = |length: f32, least: f32| (least..=LARGEST_WINDOW).contains(&length);
+        let is_possible = |length: f32, least: f32| (least..=LARGEST_WINDOW).contains(&length);
         if self.version != VERSION {
             return Some(format!("version {}: expected {VERSION}", self.version));
         }
-        if !possible(width, SMALLEST_WINDOW[0]) || !possible(height, SMALLEST_WINDOW[1]) {
+        if !is_possible(width, SMALLEST_WINDOW[0]) || !is_possible(height, SMALLEST_WINDOW[1]) {
             return Some(format!("a window of {width} x {height}"));
         }
-        if !self.choice.is_valid() {
-            return Some("settings of the fit out of their ranges".to_owned());
+        if !self.fit_settings.is_valid() {
+            return Some("fit settings out of range".to_owned());
         }
         if !self.view.azimuth.is_finite() {
-            return Some("an azimuth that is no number".to_owned());
+            return Some("an azimuth that is not finite".to_owned());
         }
         if self.recent.len() > MOST_RECENT {
             return Some(format!("{} recent files", self.recent.len()));
@@ -187,16 +211,16 @@ impl Saved {
     }
 }
 
-/// Sets a damaged file aside, and says so.
+/// Renames a damaged file, and returns a message for the user.
 fn set_aside(path: &Path, problem: &str) -> String {
     let aside = path.with_extension("damaged");
-    let kept = match std::fs::rename(path, &aside) {
-        Ok(()) => format!("it is kept as {}", aside.display()),
-        Err(error) => format!("it cannot be set aside ({error})"),
+    let outcome = match std::fs::rename(path, &aside) {
+        Ok(()) => format!("the file is kept as {}", aside.display()),
+        Err(error) => format!("the file cannot be renamed ({error})"),
     };
     format!(
-        "{}: the settings of the last time cannot be used ({problem}): expected the file as the \
-         viewer writes it; defaults are taken, {kept}",
+        "{}: the saved settings cannot be used ({problem}): expected a file written by the viewer; \
+         the defaults are used, and {outcome}",
         path.display()
     )
 }
@@ -206,20 +230,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn written_settings_are_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep").join("state.json");
-        assert_eq!(Saved::read(&path), Found::Nothing);
+        assert_eq!(Saved::read(&path), ReadResult::Missing);
         let mut saved = Saved::default();
         saved.view.residuals = true;
         saved.interface.dark = Some(true);
         saved.recent = vec![PathBuf::from("a.csv")];
         saved.write(&path).unwrap();
-        assert_eq!(Saved::read(&path), Found::Kept(saved));
+        assert_eq!(Saved::read(&path), ReadResult::Valid(saved));
     }
 
     #[test]
-    fn a_damaged_file_is_set_aside_and_told() {
+    fn a_damaged_file_is_renamed_and_reported() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("state.json");
         let good = serde_json::to_string(&Saved::default()).unwrap();
@@ -234,8 +258,8 @@ mod tests {
         for text in bad {
             assert_ne!(text, good);
             std::fs::write(&path, &text).unwrap();
-            let Found::Damaged(note) = Saved::read(&path) else {
-                panic!("{text:?} was taken");
+            let ReadResult::Damaged(note) = Saved::read(&path) else {
+                panic!("{text:?} was accepted");
             };
             assert!(
                 note.contains("state.json") && note.contains("defaults"),

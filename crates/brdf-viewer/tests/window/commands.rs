@@ -1,14 +1,15 @@
-//! Every entry of every menu, by the mouse and by its key.
+//! All menu entries, with the mouse and with their keys.
 
 use crate::common::{Window, click, menu, open_menu_and_click, settle, type_number, with_z307};
-use brdf_viewer::intent::{Command, Export, Picture};
+use brdf_viewer::intent::Command;
+use brdf_viewer::output_kind::{FigureFormat, OutputKind};
 use brdf_viewer::shortcuts::MENUS;
 use brdf_viewer::state::State;
-use brdf_viewer::state::fitting::{FitRun, Progress};
+use brdf_viewer::state::fit_run::{FitRun, Progress};
 use brdf_viewer::state::interface::Dialog;
 use egui_kittest::kittest::Queryable as _;
 
-/// A window in which a command can be carried out, with the state before it.
+/// A window in which a command is enabled and has not had its effect.
 fn ready(command: Command) -> Window {
     let mut window = with_z307();
     if command != Command::FitAll {
@@ -18,10 +19,10 @@ fn ready(command: Command) -> Window {
     match command {
         Command::Redo => menu(&mut window, "Edit", "Undo"),
         Command::SystemTheme => window.state_mut().state.interface.dark = Some(true),
-        // As if a fit of the scan had been asked for: one that does not end by itself.
+        // A run that does not end by itself, because the worker does not know it.
         Command::Cancel => {
             let scan = window.state().state.active_sample().unwrap().scan_id();
-            window.state_mut().state.run = FitRun::new(&[scan]);
+            window.state_mut().state.fit_run = FitRun::new(&[scan]);
         }
         _ => {}
     }
@@ -35,21 +36,21 @@ fn effect(command: Command, window: &Window) -> bool {
     match command {
         Command::Open | Command::OpenPath => matches!(state.dialog, Some(Dialog::Open { .. })),
         Command::Close | Command::CloseAll => state.samples.is_empty(),
-        Command::Export(what) => {
-            matches!(&state.dialog, Some(Dialog::Export { what: asked, .. }) if *asked == what)
+        Command::Export(kind) => {
+            matches!(&state.dialog, Some(Dialog::Export { kind: asked, .. }) if *asked == kind)
         }
         Command::CopyParameters => state.status == "parameters copied",
         Command::Undo => state.history.can_redo(),
         Command::Redo => !state.history.can_redo() && k1(state) == 0.4,
         Command::ResetAll => k1(state) != 0.4,
-        // Of one wavelength, at the parameters that are shown from now on.
+        // One wavelength is fitted, and has the parameters of the fit.
         Command::Fit => {
             let scans = &state.samples[0].scans;
-            scans[0].fit_shown().is_some() && scans[1].fitted.is_none()
+            scans[0].current_fit().is_some() && scans[1].last_fit.is_none()
         }
-        Command::FitAll => state.samples[0].scans.iter().all(|s| s.fitted.is_some()),
+        Command::FitAll => state.samples[0].scans.iter().all(|s| s.last_fit.is_some()),
         Command::Cancel => {
-            let run = state.run.as_ref();
+            let run = state.fit_run.as_ref();
             run.is_some_and(|run| run.progress == Progress::Cancelling)
         }
         Command::Quit => is_closing(window),
@@ -63,7 +64,7 @@ fn effect(command: Command, window: &Window) -> bool {
 }
 
 fn k1(state: &State) -> f64 {
-    state.active_sample().unwrap().scan().knobs.at.k1
+    state.active_sample().unwrap().scan().parameters.values.k1
 }
 
 /// Whether the window was asked to close in the last frame.
@@ -82,7 +83,7 @@ fn commands() -> impl Iterator<Item = (&'static str, Command)> {
     })
 }
 
-/// Frames until a command has had its effect.
+/// Runs frames until a command has had its effect.
 fn check(window: &mut Window, command: Command) {
     let started = std::time::Instant::now();
     loop {
@@ -98,10 +99,10 @@ fn check(window: &mut Window, command: Command) {
 }
 
 #[test]
-fn each_entry_of_the_menus_does_what_it_says() {
+fn each_menu_entry_has_its_effect() {
     for (title, command) in commands() {
         let mut window = ready(command);
-        // All incidences in one plot is how it begins.
+        // The window starts with all incidences in one plot.
         if command != Command::Together {
             assert!(!effect(command, &window), "{command:?}");
         }
@@ -111,10 +112,10 @@ fn each_entry_of_the_menus_does_what_it_says() {
 }
 
 #[test]
-fn each_key_does_what_its_entry_says() {
+fn each_key_has_the_effect_of_its_menu_entry() {
     for (_, command) in commands() {
         let mut window = ready(command);
-        let key = command.shortcut().expect("an entry without a key");
+        let key = command.shortcut().expect("each entry has a key");
         window.event(egui::Event::Key {
             key: key.logical_key,
             physical_key: None,
@@ -137,21 +138,21 @@ fn no_two_commands_have_the_same_key() {
 }
 
 #[test]
-fn commands_that_cannot_be_carried_out_are_grey() {
+fn commands_without_an_object_are_disabled() {
     let mut window = crate::common::empty();
     for command in [
         Command::Close,
         Command::Undo,
         Command::Fit,
         Command::Cancel,
-        Command::Export(Export::Fit),
-        Command::Export(Export::Figure(Picture::Svg)),
+        Command::Export(OutputKind::Fit),
+        Command::Export(OutputKind::Figure(FigureFormat::Svg)),
     ] {
         assert!(!window.state().state.is_enabled(command), "{command:?}");
     }
     window.key_press(egui::Key::F5);
     settle(&mut window);
-    assert!(window.state().state.run.is_none());
+    assert!(window.state().state.fit_run.is_none());
 }
 
 #[test]
@@ -165,7 +166,7 @@ fn every_built_in_sample_opens() {
         let state = &window.state().state;
         assert_eq!(state.samples.len(), 1, "{i}");
         assert_eq!(
-            state.samples[0].scan().readings() > 0,
+            state.samples[0].scan().reading_count() > 0,
             entry.measured,
             "{}",
             entry.name
@@ -175,7 +176,7 @@ fn every_built_in_sample_opens() {
 }
 
 #[test]
-fn the_sides_of_the_window_are_hidden_and_shown() {
+fn side_panels_are_hidden() {
     let mut window = with_z307();
     for name in ["samples", "parameters", "results"] {
         click(&mut window, name);

@@ -1,7 +1,7 @@
-//! What the tests of the window share: a window that nobody sees, and ways to read back what it
-//! shows.
+//! Helpers for the tests of the window: offscreen windows, user input, and access to the painted
+//! shapes.
 
-#![allow(dead_code, reason = "the random events use a part of it")]
+#![allow(dead_code, reason = "the test of random events uses only some of them")]
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::Dialogs;
-use brdf_viewer::intent::Export;
+use brdf_viewer::output_kind::OutputKind;
 use brdf_viewer::raster::Rasteriser;
 use brdf_viewer::state::saved::Settings;
-use brdf_viewer::worker::Events;
+use brdf_viewer::worker::EventSender;
 use egui::accesskit::Role;
 use egui::epaint::{ColorMode, Shape};
 use egui::{Color32, Pos2};
@@ -20,14 +20,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use egui_plot::{PlotMemory, PlotPoint};
 
-/// A window of the tests.
+/// An offscreen window.
 pub(crate) type Window = Harness<'static, Viewer>;
 
-/// The processor draws, not a graphics card.
+/// Renders on the CPU.
 #[derive(Default)]
-struct OnProcessor(Rasteriser);
+struct CpuRenderer(Rasteriser);
 
-impl egui_kittest::TestRenderer for OnProcessor {
+impl egui_kittest::TestRenderer for CpuRenderer {
     fn handle_delta(&mut self, delta: &mut egui::TexturesDelta) {
         self.0.update(delta);
     }
@@ -41,18 +41,18 @@ impl egui_kittest::TestRenderer for OnProcessor {
     }
 }
 
-/// A system without dialogs for files.
+/// A system without file dialogs.
 pub(crate) struct NoDialogs;
 
 impl Dialogs for NoDialogs {
     fn available(&self) -> bool {
         false
     }
-    fn open(&self, _: Events) {}
-    fn export(&self, _: Export, _: &Path, _: Events) {}
+    fn open(&self, _: EventSender) {}
+    fn export(&self, _: OutputKind, _: &Path, _: EventSender) {}
 }
 
-/// A window with what `dialogs` and `settings` say.
+/// A window with dialogs and settings.
 pub(crate) fn window_with(
     size: [f32; 2],
     dialogs: impl Dialogs + 'static,
@@ -63,7 +63,7 @@ pub(crate) fn window_with(
         .with_theme(egui::Theme::Light)
         .with_max_steps(60)
         .with_step_dt(1.0 / 60.0)
-        .renderer(OnProcessor::default())
+        .renderer(CpuRenderer::default())
         .build_eframe(|creation| {
             let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(dialogs), settings);
             viewer.state.interface.dark = Some(false);
@@ -73,19 +73,19 @@ pub(crate) fn window_with(
     window
 }
 
-/// An empty window of 1280 x 800.
+/// A window of 1280 x 800 points without samples.
 pub(crate) fn empty() -> Window {
-    window_with([1280.0, 800.0], NoDialogs, Settings::unkept())
+    window_with([1280.0, 800.0], NoDialogs, Settings::in_memory())
 }
 
-/// A window with the first of the built-in samples: Z307, measured.
+/// A window with the first built-in sample, the measured Z307.
 pub(crate) fn with_z307() -> Window {
     let mut window = empty();
     open_built_in(&mut window, "z307_on_aluminium.csv");
     window
 }
 
-/// Opens an entry of the built-in menu by the mouse.
+/// Opens an entry of the built-in menu with the mouse.
 pub(crate) fn open_built_in(window: &mut Window, name: &str) {
     window.get_by_label("Built-in").click();
     window.run();
@@ -93,7 +93,7 @@ pub(crate) fn open_built_in(window: &mut Window, name: &str) {
     settle(window);
 }
 
-/// Frames until all work is done.
+/// Runs frames until all jobs are done.
 pub(crate) fn settle(window: &mut Window) {
     let started = Instant::now();
     loop {
@@ -103,31 +103,31 @@ pub(crate) fn settle(window: &mut Window) {
         }
         assert!(
             started.elapsed() < Duration::from_mins(1),
-            "the work does not end"
+            "the jobs do not end"
         );
         std::thread::sleep(Duration::from_millis(2));
     }
     window.run();
 }
 
-/// Clicks on what has this label.
+/// Clicks on the control with a label.
 pub(crate) fn click(window: &mut Window, label: &str) {
     window.get_by_label(label).click();
     settle(window);
 }
 
-/// Clicks on a control of a kind.
+/// Clicks on the control with a role and a label.
 pub(crate) fn click_role(window: &mut Window, role: Role, label: &str) {
     window.get_by_role_and_label(role, label).click();
     settle(window);
 }
 
-/// Whether these words are to be read somewhere.
-pub(crate) fn shows(window: &Window, words: &str) -> bool {
-    window.query_all_by_label_contains(words).next().is_some()
+/// Whether a text is shown anywhere.
+pub(crate) fn shows(window: &Window, text: &str) -> bool {
+    window.query_all_by_label_contains(text).next().is_some()
 }
 
-/// Chooses an entry of a menu, and waits for what it does.
+/// Chooses an entry of a menu, and waits for the jobs that it starts.
 pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
     open_menu_and_click(window, title, entry);
     settle(window);
@@ -137,11 +137,11 @@ pub(crate) fn menu(window: &mut Window, title: &str, entry: &str) {
 pub(crate) fn open_menu_and_click(window: &mut Window, title: &str, entry: &str) {
     window.get_by_role_and_label(Role::Button, title).click();
     window.run();
-    // The key stands behind the name. A button of the same name may stand elsewhere, too.
-    let starts = format!("{entry} ");
+    // The key follows the name. Another button may have the same name.
+    let prefix = format!("{entry} ");
     let entries = window.get_all_by(|node| {
         let label = node.label().unwrap_or_default();
-        node.role() == Role::Button && (label == entry || label.starts_with(&starts))
+        node.role() == Role::Button && (label == entry || label.starts_with(&prefix))
     });
     let found = entries.last().unwrap();
     found.click();
@@ -155,7 +155,7 @@ pub(crate) fn type_number(window: &mut Window, label: &str, text: &str) {
     window.run();
     #[expect(
         clippy::redundant_closure_for_method_calls,
-        reason = "the type of the node is of a crate that is not ours to name"
+        reason = "the type of the node belongs to a crate that is not a direct dependency"
     )]
     let focused = window.get_by(|node| node.is_focused());
     focused.type_text(text);
@@ -164,7 +164,7 @@ pub(crate) fn type_number(window: &mut Window, label: &str, text: &str) {
     settle(window);
 }
 
-/// A dropped file that has no place of its own.
+/// A dropped file with content but without an absolute path.
 #[derive(Debug)]
 struct InMemory(PathBuf, Vec<u8>);
 
@@ -177,14 +177,14 @@ impl egui::DroppedFile for InMemory {
     }
 }
 
-/// Drops a file onto the window.
+/// Drops a file with a content onto the window.
 pub(crate) fn drop_file(window: &mut Window, name: &str, text: &str) {
     let file = InMemory(PathBuf::from(name), text.as_bytes().to_vec());
     window.input_mut().dropped_files.push(Arc::new(file));
     settle(window);
 }
 
-/// A dropped file of the system.
+/// A dropped file with an absolute path.
 #[derive(Debug)]
 struct OnDisk(PathBuf);
 
@@ -197,36 +197,36 @@ impl egui::DroppedFile for OnDisk {
     }
 }
 
-/// Drops a file of the system onto the window.
+/// Drops a file with an absolute path onto the window.
 pub(crate) fn drop_path(window: &mut Window, path: &Path) {
     let file = OnDisk(path.to_owned());
     window.input_mut().dropped_files.push(Arc::new(file));
     settle(window);
 }
 
-/// Opens a path by the box.
+/// Opens a path with the dialog.
 pub(crate) fn open_path(window: &mut Window, path: &Path) {
     menu(window, "File", "Open path...");
     enter_path(window, path);
     click_role(window, Role::Button, "Open");
 }
 
-/// Puts another path into the box of the dialog.
+/// Replaces the path in the dialog.
 pub(crate) fn enter_path(window: &mut Window, path: &Path) {
     window
-        .get_by_role_and_label(Role::TextInput, "Path of the file")
+        .get_by_role_and_label(Role::TextInput, "File path")
         .focus();
     window.run();
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::A);
     window.run();
     let text = path.display().to_string();
     window
-        .get_by_role_and_label(Role::TextInput, "Path of the file")
+        .get_by_role_and_label(Role::TextInput, "File path")
         .type_text(&text);
     window.run();
 }
 
-/// Every shape that is painted, those within others by themselves.
+/// All painted shapes, without nesting.
 pub(crate) fn painted(window: &Window) -> Vec<&Shape> {
     fn collect<'a>(shape: &'a Shape, all: &mut Vec<&'a Shape>) {
         match shape {
@@ -241,7 +241,7 @@ pub(crate) fn painted(window: &Window) -> Vec<&Shape> {
     all
 }
 
-/// Every text that is painted, with its place.
+/// All painted texts, with their rectangles.
 pub(crate) fn painted_texts(window: &Window) -> Vec<(String, egui::Rect)> {
     let text = |shape: &Shape| match shape {
         Shape::Text(text) => Some((text.galley.text().to_owned(), text.visual_bounding_rect())),
@@ -250,7 +250,7 @@ pub(crate) fn painted_texts(window: &Window) -> Vec<(String, egui::Rect)> {
     painted(window).into_iter().filter_map(text).collect()
 }
 
-/// The painted lines of a colour, on the screen.
+/// The painted lines of a colour, in screen coordinates.
 pub(crate) fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
     let line = |shape: &Shape| match shape {
         Shape::Path(path) if path.stroke.color == ColorMode::Solid(colour) => {
@@ -261,7 +261,7 @@ pub(crate) fn painted_lines(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> 
     painted(window).into_iter().filter_map(line).collect()
 }
 
-/// The ends of the painted segments of a colour, on the screen.
+/// The painted segments of a colour, in screen coordinates.
 pub(crate) fn painted_segments(window: &Window, colour: Color32) -> Vec<[Pos2; 2]> {
     let segment = |shape: &Shape| match shape {
         Shape::LineSegment { points, stroke } if stroke.color == colour => Some(*points),
@@ -270,7 +270,7 @@ pub(crate) fn painted_segments(window: &Window, colour: Color32) -> Vec<[Pos2; 2
     painted(window).into_iter().filter_map(segment).collect()
 }
 
-/// The corners of the painted areas of a colour, on the screen.
+/// The vertices of the painted meshes of a colour, in screen coordinates.
 pub(crate) fn painted_areas(window: &Window, colour: Color32) -> Vec<Vec<Pos2>> {
     let area = |shape: &Shape| match shape {
         Shape::Mesh(mesh) if mesh.vertices.first().is_some_and(|v| v.color == colour) => {
@@ -299,7 +299,7 @@ pub(crate) fn painted_curve(window: &Window, plot: &str, colour: Color32) -> Vec
         .collect()
 }
 
-/// The middles of the painted marks of a colour: filled circles and polygons.
+/// The centres of the painted marks of a colour: filled circles and polygons.
 pub(crate) fn painted_marks(window: &Window, colour: Color32) -> Vec<Pos2> {
     let mark = |shape: &Shape| match shape {
         Shape::Circle(circle) if circle.fill == colour => Some(circle.center),
@@ -316,11 +316,11 @@ pub(crate) fn painted_marks(window: &Window, colour: Color32) -> Vec<Pos2> {
     painted(window).into_iter().filter_map(mark).collect()
 }
 
-/// The colour of an incidence of the only sample.
+/// The colour of an incidence of the active sample.
 pub(crate) fn colour_of(window: &Window, i: usize) -> Color32 {
     let state = &window.state().state;
     let sample = state.active_sample().unwrap();
-    let shown = sample.scan().shown_psi().len();
+    let shown = sample.scan().visible_psi().len();
     let [r, g, b] = brdf_fit::plot::colour(
         state.family_of(sample),
         i,
@@ -330,7 +330,7 @@ pub(crate) fn colour_of(window: &Window, i: usize) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// The Z307 sample of the project as text.
+/// The content of the Z307 sample of the project.
 pub(crate) fn z307() -> String {
     let path =
         Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/measured/z307_on_aluminium.csv");

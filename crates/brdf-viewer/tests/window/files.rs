@@ -1,5 +1,5 @@
-//! Opening and writing: the path box, dropped files, dialogs, exports, the recent files, and what is
-//! kept between two starts.
+//! Opening and writing of files: dialogs, dropped files, exports, recent files, and the settings saved
+//! between sessions.
 
 use std::path::{Path, PathBuf};
 
@@ -10,10 +10,11 @@ use crate::common::{
 use brdf_fit::report::Document;
 use brdf_fit::scan::{Convention, Side};
 use brdf_viewer::dialogs::Dialogs;
-use brdf_viewer::intent::{Export, Intent};
+use brdf_viewer::intent::Intent;
 use brdf_viewer::job::Event;
+use brdf_viewer::output_kind::OutputKind;
 use brdf_viewer::state::saved::Settings;
-use brdf_viewer::worker::Events;
+use brdf_viewer::worker::EventSender;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
@@ -51,7 +52,7 @@ fn a_path_is_opened_and_remembered() {
 }
 
 #[test]
-fn a_bad_file_is_told_with_its_line_and_value_and_the_data_stay() {
+fn an_invalid_file_is_reported_with_line_and_value_and_the_data_stay() {
     let mut window = with_z307();
     let before = names(&window);
     drop_file(
@@ -75,14 +76,14 @@ fn a_bad_file_is_told_with_its_line_and_value_and_the_data_stay() {
 }
 
 #[test]
-fn a_good_file_is_dropped() {
+fn a_valid_file_is_dropped() {
     let mut window = empty();
     drop_file(&mut window, "a.csv", &z307());
     assert_eq!(names(&window), ["a"]);
     assert!(shows(&window, "112 readings"));
 }
 
-/// Dialogs that answer by themselves.
+/// Dialogs that answer immediately.
 struct Answers {
     open: PathBuf,
     write: PathBuf,
@@ -92,17 +93,17 @@ impl Dialogs for Answers {
     fn available(&self) -> bool {
         true
     }
-    fn open(&self, events: Events) {
-        events.send(Event::Chosen(vec![self.open.clone()]));
+    fn open(&self, events: EventSender) {
+        events.send(Event::FilesChosen(vec![self.open.clone()]));
     }
-    fn export(&self, what: Export, suggested: &Path, events: Events) {
+    fn export(&self, kind: OutputKind, suggested: &Path, events: EventSender) {
         assert!(suggested.extension().is_some());
-        events.send(Event::ChosenExport(what, self.write.clone()));
+        events.send(Event::OutputChosen(kind, self.write.clone()));
     }
 }
 
 #[test]
-fn the_dialogs_of_the_system_are_used_where_there_are_any() {
+fn the_dialogs_of_the_system_are_used_if_available() {
     let folder = tempfile::tempdir().unwrap();
     let open = folder.path().join("in.csv");
     std::fs::write(&open, z307()).unwrap();
@@ -111,7 +112,7 @@ fn the_dialogs_of_the_system_are_used_where_there_are_any() {
         open: open.clone(),
         write: write.clone(),
     };
-    let mut window = window_with([1280.0, 800.0], answers, Settings::unkept());
+    let mut window = window_with([1280.0, 800.0], answers, Settings::in_memory());
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::O);
     settle(&mut window);
     settle(&mut window);
@@ -119,7 +120,7 @@ fn the_dialogs_of_the_system_are_used_where_there_are_any() {
     menu(&mut window, "File", "Export theory and readings as CSV...");
     settle(&mut window);
     wait_for(&mut window, &write);
-    // The dialog can be asked for from the box as well.
+    // The dialog of the viewer can open that of the system.
     menu(&mut window, "File", "Open path...");
     click(&mut window, "Browse...");
     settle(&mut window);
@@ -166,17 +167,17 @@ fn the_figure_is_written_as_svg_and_png() {
     }
 }
 
-/// Writes, and waits for the file, which may have been there before.
+/// Writes a file, which may exist, and waits for it.
 fn write(window: &mut Window, entry: &str, path: &Path) {
     let _ = std::fs::remove_file(path);
     menu(window, "File", entry);
     enter_path(window, path);
-    click_role(window, Role::Button, "Write");
+    click_role(window, Role::Button, "Save");
     wait_for(window, path);
 }
 
 #[test]
-fn theory_and_readings_are_written_for_the_parameters_as_they_are_turned() {
+fn theory_and_readings_are_written_for_the_current_parameters() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("curves.csv");
     let mut window = with_z307();
@@ -188,7 +189,7 @@ fn theory_and_readings_are_written_for_the_parameters_as_they_are_turned() {
         .active_sample()
         .unwrap()
         .scan()
-        .knobs
+        .parameters
         .brdf()
         .unwrap();
     let mut reader = csv::ReaderBuilder::new()
@@ -224,22 +225,25 @@ fn a_fit_is_written_and_read_back_to_the_last_digit() {
     export_fit(&mut window, &json);
     let document = Document::read(&json).unwrap();
     assert_eq!(document.reports.len(), 2);
-    let knobs = |window: &Window| {
+    let parameters = |window: &Window| {
         let scans = &window.state().state.active_sample().unwrap().scans;
-        scans.iter().map(|scan| scan.knobs.at).collect::<Vec<_>>()
+        scans
+            .iter()
+            .map(|scan| scan.parameters.values)
+            .collect::<Vec<_>>()
     };
-    let fitted = knobs(&window);
+    let fitted = parameters(&window);
     menu(&mut window, "File", "Close all samples");
     open_path(&mut window, &json);
-    assert_eq!(knobs(&window), fitted);
+    assert_eq!(parameters(&window), fitted);
     assert!(shows(&window, "verdict"));
-    // The scan may have moved with the fit.
+    // The scan is found if it was moved together with the fit.
     let moved = tempfile::tempdir().unwrap();
     std::fs::rename(&scan, moved.path().join("paint.csv")).unwrap();
     std::fs::rename(&json, moved.path().join("fit.json")).unwrap();
     menu(&mut window, "File", "Close all samples");
     open_path(&mut window, &moved.path().join("fit.json"));
-    assert_eq!(knobs(&window), fitted);
+    assert_eq!(parameters(&window), fitted);
     std::fs::remove_file(moved.path().join("paint.csv")).unwrap();
     open_path(&mut window, &moved.path().join("fit.json"));
     assert!(window.state().state.errors()[0].contains("cannot be found"));
@@ -265,7 +269,7 @@ fn a_fit_of_a_built_in_sample_is_read_back() {
             .active_sample()
             .unwrap()
             .scan()
-            .fit_shown()
+            .current_fit()
             .is_some()
     );
 }
@@ -287,7 +291,7 @@ fn a_fit_that_names_a_fit_as_its_scan_is_refused() {
 }
 
 #[test]
-fn the_angles_of_a_file_are_read_as_the_user_says() {
+fn the_angular_convention_of_a_file_is_chosen_by_the_user() {
     let folder = tempfile::tempdir().unwrap();
     let (scan, json) = (
         folder.path().join("turned.csv"),
@@ -317,7 +321,7 @@ fn the_angles_of_a_file_are_read_as_the_user_says() {
     check(&window);
     click(&mut window, "Stage 1");
     export_fit(&mut window, &json);
-    // The fit knows how its scan was read, whatever holds for the next file.
+    // A fit stores the convention of its scan, which overrides the one for the next file.
     menu(&mut window, "File", "Close all samples");
     let convention = Convention::default();
     window
@@ -342,7 +346,7 @@ fn scans_of_other_formats_and_their_fits_are_opened() {
     let check = |window: &Window| {
         let sample = window.state().state.active_sample().unwrap();
         let measurements = &sample.scan().measurements;
-        // In the format's coordinates azimuth 0 is forward, without a word in the menu.
+        // The format defines azimuth 0 as forward, independently of the menu.
         let theta = measurements.readings()[0].in_plane_theta().unwrap();
         assert!((theta + 30_f64.to_radians()).abs() < 1e-12);
         assert_eq!(measurements.format, brdf_fit::scan::Format::Astm);
@@ -358,10 +362,10 @@ fn scans_of_other_formats_and_their_fits_are_opened() {
 }
 
 #[test]
-fn a_table_is_opened_as_a_goniometer_would_have_scanned_it() {
+fn a_table_is_opened_as_a_goniometer_scan() {
     let folder = tempfile::tempdir().unwrap();
     let table = folder.path().join("paint.binary");
-    // 6 x 5 x 8 bins of three channels, that of each channel with a value of its own.
+    // 6 x 5 x 8 bins of three channels, with different values.
     let mut bytes = [6_i32, 5, 8].map(i32::to_le_bytes).concat();
     for value in [150.0_f64, 300.0, 450.0] {
         bytes.extend((0..240).flat_map(|bin| (value + f64::from(bin)).to_le_bytes()));
@@ -387,7 +391,7 @@ fn a_table_is_opened_as_a_goniometer_would_have_scanned_it() {
 }
 
 #[test]
-fn a_scan_is_not_written_over() {
+fn an_open_scan_is_not_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let scan = folder.path().join("paint.csv");
     std::fs::write(&scan, z307()).unwrap();
@@ -397,15 +401,15 @@ fn a_scan_is_not_written_over() {
     enter_path(&mut window, &scan);
     assert!(
         window
-            .query_by_label("This file will be replaced.")
+            .query_by_label("This file exists and will be replaced.")
             .is_some()
     );
-    click_role(&mut window, Role::Button, "Write");
+    click_role(&mut window, Role::Button, "Save");
     assert!(window.state().state.errors()[0].contains("is an open scan"));
     assert_eq!(std::fs::read_to_string(&scan).unwrap(), z307());
     menu(&mut window, "File", "Export figure as SVG...");
     enter_path(&mut window, Path::new("/no/such/folder/a.svg"));
-    click_role(&mut window, Role::Button, "Write");
+    click_role(&mut window, Role::Button, "Save");
     for _ in 0..400 {
         window.step();
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -432,9 +436,15 @@ fn the_parameter_table_goes_to_the_clipboard() {
             }
         }
     }
-    let knobs = window.state().state.active_sample().unwrap().scan().knobs;
+    let parameters = window
+        .state()
+        .state
+        .active_sample()
+        .unwrap()
+        .scan()
+        .parameters;
     assert!(
-        copied.contains(&format!("k2\t{}\t", knobs.at.k2)),
+        copied.contains(&format!("k2\t{}\t", parameters.values.k2)),
         "{copied}"
     );
     assert_eq!(copied.lines().count(), 5);
@@ -449,16 +459,16 @@ fn the_parameter_table_goes_to_the_clipboard() {
 }
 
 #[test]
-fn the_window_is_as_it_was_left() {
+fn the_settings_of_the_last_session_are_restored() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.json");
-    let settings = || Settings::of(Some(path.clone()));
+    let settings = || Settings::load(Some(path.clone()));
     let mut window = window_with([1000.0, 700.0], NoDialogs, settings());
     window.state_mut().open_at_start(Vec::new());
     settle(&mut window);
     assert_eq!(names(&window), ["z307_on_aluminium"]);
     click(&mut window, "log");
-    menu(&mut window, "View", "Polar form");
+    menu(&mut window, "View", "Polar plot");
     drop(window);
     let mut again = window_with([1000.0, 700.0], NoDialogs, settings());
     again.state_mut().open_at_start(Vec::new());
@@ -475,14 +485,14 @@ fn the_window_is_as_it_was_left() {
 }
 
 #[test]
-fn a_path_is_entered_by_the_keyboard_alone() {
+fn a_path_is_entered_with_the_keyboard_only() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("paint.csv");
     std::fs::write(&path, z307()).unwrap();
     let mut window = empty();
     window.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::O);
     settle(&mut window);
-    // The box has the keyboard without a click.
+    // The text field has the focus without a click.
     window.event(egui::Event::Text(path.display().to_string()));
     window.run();
     window.key_press(egui::Key::Enter);
@@ -491,12 +501,12 @@ fn a_path_is_entered_by_the_keyboard_alone() {
 }
 
 #[test]
-fn without_dialogs_open_asks_for_a_path() {
+fn without_dialogs_of_the_system_the_viewer_asks_for_a_path() {
     let mut window = empty();
     menu(&mut window, "File", "Open...");
     assert!(
         window
-            .query_by_role_and_label(Role::TextInput, "Path of the file")
+            .query_by_role_and_label(Role::TextInput, "File path")
             .is_some()
     );
     window.key_press(egui::Key::Escape);
@@ -504,19 +514,19 @@ fn without_dialogs_open_asks_for_a_path() {
     assert!(window.state().state.dialog.is_none());
 }
 
-/// Writes, and expects to be refused.
+/// Tries to write a file, and returns the error.
 fn refused(window: &mut Window, entry: &str, path: &Path) -> String {
     let before = window.state().state.errors().len();
     menu(window, "File", entry);
     enter_path(window, path);
-    click_role(window, Role::Button, "Write");
+    click_role(window, Role::Button, "Save");
     let errors = window.state().state.errors();
     assert_eq!(errors.len(), before + 1, "{errors:?}");
     errors.last().unwrap().clone()
 }
 
 #[test]
-fn a_scan_that_was_opened_by_its_fit_is_not_written_over_but_the_fit_is() {
+fn a_scan_opened_through_its_fit_is_not_overwritten_but_the_fit_is() {
     let folder = tempfile::tempdir().unwrap();
     let (scan, json) = (
         folder.path().join("paint.csv"),
@@ -535,7 +545,7 @@ fn a_scan_that_was_opened_by_its_fit_is_not_written_over_but_the_fit_is() {
     assert_eq!(std::fs::read_to_string(&scan).unwrap(), z307());
     let error = refused(&mut window, curves, &json);
     assert!(error.contains("is the fit of open samples"), "{error}");
-    // The fit itself is brought up to date.
+    // The fit itself is updated.
     click(&mut window, "Fit all");
     export_fit(&mut window, &json);
     assert_eq!(Document::read(&json).unwrap().reports.len(), 2);
@@ -554,7 +564,7 @@ fn a_fit_of_several_files_opens_a_sample_for_each() {
         open_path(&mut window, &scan);
         click(&mut window, "Both stages");
         let state = &window.state().state;
-        let report = state.active_sample().unwrap().scan().fitted.clone();
+        let report = state.active_sample().unwrap().scan().last_fit.clone();
         reports.push((*report.unwrap()).clone());
     }
     let text = serde_json::to_string(&Document::new(reports)).unwrap();
@@ -564,9 +574,9 @@ fn a_fit_of_several_files_opens_a_sample_for_each() {
     assert_eq!(names(&window), ["a", "b"]);
     let state = &window.state().state;
     assert!(state.samples.iter().all(|sample| sample.scans.len() == 2));
-    assert!(state.samples.iter().all(|s| s.scan().fitted.is_some()));
+    assert!(state.samples.iter().all(|s| s.scan().last_fit.is_some()));
     assert_eq!(state.saved([900.0, 600.0]).open.len(), 1);
-    // Both fits are written where they are from; with one of them closed it would be lost.
+    // Both fits are written to their file. With one of them closed, it would be lost.
     export_fit(&mut window, &json);
     assert_eq!(Document::read(&json).unwrap().reports.len(), 2);
     click(&mut window, "close a");
@@ -575,7 +585,7 @@ fn a_fit_of_several_files_opens_a_sample_for_each() {
 }
 
 #[test]
-fn a_relative_path_is_found_again_from_any_folder() {
+fn relative_paths_are_saved_as_absolute_ones() {
     let mut window = empty();
     let path = Path::new("../../data/measured/z307_on_aluminium.csv");
     window
@@ -590,7 +600,7 @@ fn a_relative_path_is_found_again_from_any_folder() {
 }
 
 #[test]
-fn a_file_of_the_system_is_dropped_and_remembered() {
+fn a_dropped_file_with_a_path_is_added_to_the_recent_files() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("paint.csv");
     std::fs::write(&path, z307()).unwrap();
@@ -599,31 +609,31 @@ fn a_file_of_the_system_is_dropped_and_remembered() {
     assert_eq!(names(&window), ["paint"]);
     assert_eq!(window.state().state.recent, [path]);
     drop_path(&mut window, folder.path());
-    assert!(window.state().state.errors()[0].contains("is no regular file"));
+    assert!(window.state().state.errors()[0].contains("is not a regular file"));
 }
 
 #[cfg(unix)]
 #[test]
-fn a_pipe_is_refused_and_what_comes_after_it_is_opened() {
+fn a_pipe_is_refused_and_the_next_file_is_opened() {
     let folder = tempfile::tempdir().unwrap();
     let pipe = folder.path().join("pipe.csv");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     assert!(made.unwrap().success());
     let mut window = with_z307();
     open_path(&mut window, &pipe);
-    assert!(window.state().state.errors()[0].contains("is no regular file"));
+    assert!(window.state().state.errors()[0].contains("is not a regular file"));
     menu(&mut window, "File", "Export figure as SVG...");
     enter_path(&mut window, &pipe);
-    click_role(&mut window, Role::Button, "Write");
+    click_role(&mut window, Role::Button, "Save");
     let path = folder.path().join("paint.csv");
     std::fs::write(&path, z307()).unwrap();
     open_path(&mut window, &path);
-    assert!(window.state().state.errors()[1].contains("is no regular file"));
+    assert!(window.state().state.errors()[1].contains("is not a regular file"));
     assert_eq!(names(&window), ["z307_on_aluminium", "paint"]);
 }
 
 #[test]
-fn theory_without_readings_is_written_where_it_is_drawn() {
+fn theory_without_readings_is_written_at_the_angles_where_it_is_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("theory.csv");
     let mut window = empty();
@@ -631,7 +641,7 @@ fn theory_without_readings_is_written_where_it_is_drawn() {
     write(&mut window, "Export theory and readings as CSV...", &path);
     let state = &window.state().state;
     let sample = state.active_sample().unwrap();
-    let brdf = sample.scan().knobs.brdf().unwrap();
+    let brdf = sample.scan().parameters.brdf().unwrap();
     let mut reader = csv::Reader::from_path(&path).unwrap();
     let mut rows = 0;
     for row in reader.records().map(Result::unwrap) {
@@ -642,24 +652,24 @@ fn theory_without_readings_is_written_where_it_is_drawn() {
         assert!(row[5].is_empty() && row[4] == *"0");
         rows += 1;
     }
-    let drawn = state.shown.curves(sample.scan_id());
+    let drawn = state.derived.curves(sample.scan_id());
     let drawn: usize = drawn.iter().map(|curve| curve.theory.len()).sum();
     assert_eq!(rows, drawn);
 }
 
 #[test]
-fn a_figure_without_any_incidence_is_no_figure() {
+fn a_figure_without_any_incidence_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("figure.svg");
     let mut window = with_z307();
-    click(&mut window, "none incidences");
+    click(&mut window, "hide all incidences");
     let error = refused(&mut window, "Export figure as SVG...", &path);
-    assert!(error.contains("no incidence is chosen"), "{error}");
+    assert!(error.contains("no incidence is selected"), "{error}");
     assert!(!path.exists());
 }
 
 #[test]
-fn a_figure_of_several_samples_says_which_is_which() {
+fn a_figure_of_several_samples_names_each_of_them() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("figure.svg");
     let mut window = with_z307();
@@ -671,16 +681,19 @@ fn a_figure_of_several_samples_says_which_is_which() {
     for sample in &window.state().state.samples {
         let scan = sample.scan();
         let (name, wavelength) = (&sample.name, scan.wavelength_um().unwrap());
-        let words = format!(
+        let text = format!(
             "{name}, {wavelength} um: three: k2 = {:.4}, kD = {:.4}, k1 = {:.4}, n = {:.4}",
-            scan.knobs.at.k2, scan.knobs.at.kd, scan.knobs.at.k1, scan.knobs.at.n
+            scan.parameters.values.k2,
+            scan.parameters.values.kd,
+            scan.parameters.values.k1,
+            scan.parameters.values.n
         );
-        assert!(svg.contains(&words), "{words}");
+        assert!(svg.contains(&text), "{text}");
     }
 }
 
 #[test]
-fn samples_of_the_same_name_and_long_names_are_told_apart() {
+fn samples_with_equal_or_long_names_are_distinguishable() {
     let mut window = empty();
     let long = "a_paint_with_a_long_name_on_a_plate_of_aluminium";
     for name in [format!("{long}_1.csv"), format!("{long}_2.csv")] {

@@ -1,4 +1,4 @@
-//! The fit: its buttons and settings, progress, cancelling, and what it shows.
+//! The fit: buttons, settings, progress, cancellation and results.
 
 use std::time::{Duration, Instant};
 
@@ -10,18 +10,20 @@ use brdf_fit::plot::Ground;
 use brdf_fit::progress::Phase;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex};
-use brdf_viewer::intent::{Command, Export, Intent};
-use brdf_viewer::state::fitting::{Progress, ReadingWeights, Scope, Stages, Start};
+use brdf_viewer::intent::{Command, Intent};
+use brdf_viewer::output_kind::OutputKind;
+use brdf_viewer::state::fit_run::Progress;
+use brdf_viewer::state::fit_settings::{ReadingWeights, Scope, Stages, Start};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
 fn report(window: &Window) -> Report {
     let state = &window.state().state;
     let scan = state.active_sample().unwrap().scan();
-    (**scan.fitted.as_ref().expect("no fit")).clone()
+    (**scan.last_fit.as_ref().expect("no fit")).clone()
 }
 
-/// The report of the command line's options on the same data.
+/// The report of the library with the options of the command line.
 fn expected(change: impl FnOnce(&mut FitOptions)) -> Report {
     let all = Measurements::from_reader(z307().as_bytes()).unwrap();
     let scan = all.by_wavelength().remove(0);
@@ -45,7 +47,7 @@ fn check_same(window: &Window, expected: &Report) {
 }
 
 #[test]
-fn both_stages_give_the_numbers_of_the_library() {
+fn a_fit_of_both_stages_equals_that_of_the_library() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
     check_same(&window, &expected(|_| {}));
@@ -57,7 +59,7 @@ fn both_stages_give_the_numbers_of_the_library() {
         .active_sample()
         .unwrap()
         .scan()
-        .steps
+        .convergence
         .clone();
     let fit = report(&window).fit.unwrap();
     for (phase, stage) in [
@@ -80,16 +82,16 @@ fn each_stage_has_its_button() {
 }
 
 #[test]
-fn the_settings_are_those_of_the_fit() {
+fn the_settings_are_applied_to_the_fit() {
     let mut window = with_z307();
-    click(&mut window, "Settings of the fit");
-    click_role(&mut window, Role::ComboBox, "Method of stage 1");
+    click(&mut window, "Fit settings");
+    click_role(&mut window, Role::ComboBox, "Stage 1 method");
     click(&mut window, "nelder-mead");
-    type_number(&mut window, "Stage 1 up to", "40");
-    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    type_number(&mut window, "Largest psi in stage 1", "40");
+    click_role(&mut window, Role::ComboBox, "Reading weights");
     click(&mut window, "solid angle");
     assert_eq!(
-        window.state().state.choice.weights,
+        window.state().state.fit_settings.weights,
         ReadingWeights::SolidAngle
     );
     click(&mut window, "Both stages");
@@ -103,8 +105,8 @@ fn the_settings_are_those_of_the_fit() {
     );
     click_role(&mut window, Role::ComboBox, "Loss");
     click(&mut window, "tukey");
-    click(&mut window, "rho <= 1 up to");
-    click(&mut window, "Fit GGX and Beckmann beside it");
+    click(&mut window, "Enforce rho <= 1 up to");
+    click(&mut window, "Also fit GGX and Beckmann");
     click(&mut window, "Both stages");
     let fit = report(&window).fit.unwrap();
     assert!(fit.robust.is_some() && fit.energy.is_some());
@@ -112,23 +114,23 @@ fn the_settings_are_those_of_the_fit() {
 }
 
 #[test]
-fn the_fit_starts_from_the_sliders_where_the_user_says_so() {
+fn a_fit_can_start_from_the_current_values() {
     let mut window = with_z307();
     type_number(&mut window, "k1", "0.9");
-    click(&mut window, "the sliders");
-    assert_eq!(window.state().state.choice.start, Start::Sliders);
+    click(&mut window, "current values");
+    assert_eq!(window.state().state.fit_settings.start, Start::Current);
     click(&mut window, "Both stages");
     let fit = report(&window).fit.unwrap();
     assert_eq!(fit.initial.parameters.k1, 0.9);
 }
 
 #[test]
-fn weights_without_sigma_are_a_clear_error() {
+fn weights_by_sigma_without_sigma_are_an_error() {
     let mut window = with_z307();
-    click(&mut window, "Settings of the fit");
-    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    click(&mut window, "Fit settings");
+    click_role(&mut window, Role::ComboBox, "Reading weights");
     click(&mut window, "1/sigma²");
-    assert!(shows(&window, "no E: "));
+    assert!(shows(&window, "E is not available: "));
     click(&mut window, "Both stages");
     let errors = window.state().state.errors();
     assert!(errors[0].contains("sigma"), "{errors:?}");
@@ -136,13 +138,13 @@ fn weights_without_sigma_are_a_clear_error() {
 }
 
 #[test]
-fn turned_parameters_are_told_and_lose_the_band() {
+fn changed_parameters_are_noted_and_have_no_band() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
     let banded = |window: &Window| {
         let state = &window.state().state;
         let id = state.active_sample().unwrap().scan_id();
-        state.shown.curves(id)[0]
+        state.derived.curves(id)[0]
             .theory
             .iter()
             .any(|t| t.sigma.is_some())
@@ -152,12 +154,12 @@ fn turned_parameters_are_told_and_lose_the_band() {
     assert!(!banded(&window));
     assert!(
         window
-            .query_by_label("The parameters were turned since this fit.")
+            .query_by_label("The parameters have changed since this fit.")
             .is_some()
     );
 }
 
-/// A scan large enough for its fit to be seen: 20 incidences, 200,000 readings.
+/// A scan whose fit takes long enough to be observed: 20 incidences, 200,000 readings.
 fn large() -> String {
     use std::fmt::Write as _;
     let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
@@ -173,7 +175,7 @@ fn large() -> String {
 }
 
 #[test]
-fn a_long_fit_is_followed_and_cancelled() {
+fn a_long_fit_shows_its_progress_and_is_cancelled() {
     let mut window = empty();
     drop_file(&mut window, "large.csv", &large());
     assert_eq!(
@@ -183,20 +185,26 @@ fn a_long_fit_is_followed_and_cancelled() {
             .active_sample()
             .unwrap()
             .scan()
-            .readings(),
+            .reading_count(),
         200_000
     );
     click_role(&mut window, Role::ComboBox, "model");
     let entries = window.get_all_by_label("power+n: the paper's with a free exponent, n free");
     entries.last().unwrap().click();
     settle(&mut window);
-    let before = window.state().state.active_sample().unwrap().scan().knobs;
+    let before = window
+        .state()
+        .state
+        .active_sample()
+        .unwrap()
+        .scan()
+        .parameters;
     click(&mut window, "E against iteration");
     window.get_by_label("Both stages").click();
     let started = Instant::now();
     let mut longest_frame = Duration::ZERO;
-    // The curve of the stage is painted while it grows.
-    let first = brdf_viewer::theme::plain(0, Ground::Light);
+    // The curve of the first stage grows from frame to frame.
+    let first = brdf_viewer::theme::series_colour(0, Ground::Light);
     let mut lengths = vec![0];
     while lengths.len() < 4 {
         assert!(started.elapsed() < Duration::from_mins(1));
@@ -218,7 +226,7 @@ fn a_long_fit_is_followed_and_cancelled() {
     while window.state().state.is_fitting() {
         assert!(
             cancelled.elapsed() < Duration::from_secs(20),
-            "the fit does not stop"
+            "the fit does not end"
         );
         window.step();
         std::thread::sleep(Duration::from_millis(1));
@@ -229,9 +237,12 @@ fn a_long_fit_is_followed_and_cancelled() {
         cancelled.elapsed()
     );
     let state = &window.state().state;
-    assert_eq!(state.run.as_ref().unwrap().progress, Progress::Cancelled);
-    assert_eq!(state.active_sample().unwrap().scan().knobs, before);
-    assert!(state.active_sample().unwrap().scan().fitted.is_none());
+    assert_eq!(
+        state.fit_run.as_ref().unwrap().progress,
+        Progress::Cancelled
+    );
+    assert_eq!(state.active_sample().unwrap().scan().parameters, before);
+    assert!(state.active_sample().unwrap().scan().last_fit.is_none());
     assert!(shows(&window, "cancelled"));
 }
 
@@ -242,28 +253,31 @@ fn all_samples_are_fitted_together() {
     open_built_in(&mut window, "Table 1, 003 at 0.91 um");
     click(&mut window, "Fit all");
     let state = &window.state().state;
-    let run = state.run.as_ref().unwrap();
-    assert_eq!((run.jobs(), run.done()), (4, 4));
-    let measured = state.samples.iter().filter(|s| s.scan().readings() > 0);
+    let run = state.fit_run.as_ref().unwrap();
+    assert_eq!((run.fit_count(), run.ended_count()), (4, 4));
+    let measured = state
+        .samples
+        .iter()
+        .filter(|s| s.scan().reading_count() > 0);
     assert!(
         measured
             .flat_map(|s| &s.scans)
-            .all(|scan| scan.fitted.is_some())
+            .all(|scan| scan.last_fit.is_some())
     );
 }
 
-/// The large scan, with another sample beside it, while all are fitted.
+/// A window with the large scan and another sample, while all are being fitted.
 fn fitting_all() -> Window {
     let mut window = empty();
     drop_file(&mut window, "large.csv", &large());
     open_built_in(&mut window, "z307_on_aluminium.csv");
     window.get_by_label("Fit all").click();
     let started = Instant::now();
-    let begun = |window: &Window| {
-        let run = window.state().state.run.as_ref();
+    let has_begun = |window: &Window| {
+        let run = window.state().state.fit_run.as_ref();
         run.is_some_and(|run| !run.points.is_empty())
     };
-    while !begun(&window) {
+    while !has_begun(&window) {
         assert!(started.elapsed() < Duration::from_mins(1));
         window.step();
         std::thread::sleep(Duration::from_millis(1));
@@ -272,32 +286,32 @@ fn fitting_all() -> Window {
 }
 
 #[test]
-fn closing_a_sample_ends_its_fit_and_no_other() {
+fn closing_a_sample_cancels_only_its_own_fit() {
     let mut window = fitting_all();
     assert!(window.state().state.is_fitting());
     window.get_by_label("close large").click();
     settle(&mut window);
     let state = &window.state().state;
     assert_eq!(state.samples.len(), 1);
-    assert!(state.samples[0].scans.iter().all(|s| s.fitted.is_some()));
-    let run = state.run.as_ref().unwrap();
-    let counts = (run.progress, run.jobs(), run.done());
+    assert!(state.samples[0].scans.iter().all(|s| s.last_fit.is_some()));
+    let run = state.fit_run.as_ref().unwrap();
+    let counts = (run.progress, run.fit_count(), run.ended_count());
     assert_eq!(counts, (Progress::Done, 2, 2));
     assert!(window.query_by_label("2 of 2 fitted").is_some());
 }
 
 #[test]
-fn closing_all_samples_leaves_no_fit() {
+fn closing_all_samples_removes_the_run() {
     let mut window = fitting_all();
-    let wish = Intent::Do(Command::CloseAll);
-    window.state_mut().state.apply(wish);
+    let close_all = Intent::Command(Command::CloseAll);
+    window.state_mut().state.apply(close_all);
     settle(&mut window);
-    assert!(window.state().state.run.is_none());
+    assert!(window.state().state.fit_run.is_none());
     assert!(window.query_by_label_contains("fitted").is_none());
 }
 
 #[test]
-fn escape_closes_a_menu_and_only_then_cancels_the_fit() {
+fn escape_first_closes_a_menu_and_then_cancels_the_fit() {
     let mut window = fitting_all();
     for (role, label) in [(Role::ComboBox, "model"), (Role::Button, "Edit")] {
         window.get_by_role_and_label(role, label).click();
@@ -305,28 +319,28 @@ fn escape_closes_a_menu_and_only_then_cancels_the_fit() {
         window.step();
         window.key_press(egui::Key::Escape);
         window.step();
-        let run = window.state().state.run.as_ref().unwrap();
+        let run = window.state().state.fit_run.as_ref().unwrap();
         assert_eq!(run.progress, Progress::Running, "{label}");
         window.step();
     }
     window.key_press(egui::Key::Escape);
     window.step();
-    let run = window.state().state.run.as_ref().unwrap();
+    let run = window.state().state.fit_run.as_ref().unwrap();
     assert_ne!(run.progress, Progress::Running);
     settle(&mut window);
-    let run = window.state().state.run.as_ref().unwrap();
+    let run = window.state().state.fit_run.as_ref().unwrap();
     assert_eq!(run.progress, Progress::Cancelled);
 }
 
 #[test]
-fn convergence_is_that_of_the_scan_that_is_shown() {
+fn convergence_is_shown_for_the_current_scan() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
     open_built_in(&mut window, "titanium_anodise.csv");
     click(&mut window, "E against iteration");
     let plot = "plot of E against iteration";
     assert!(window.query_by_label(plot).is_none());
-    assert!(shows(&window, "No stage of this wavelength"));
+    assert!(shows(&window, "This wavelength has not been fitted"));
     click(&mut window, "z307_on_aluminium");
     assert!(window.query_by_label(plot).is_some());
     click(&mut window, "close z307_on_aluminium");
@@ -334,7 +348,7 @@ fn convergence_is_that_of_the_scan_that_is_shown() {
 }
 
 #[test]
-fn weights_by_sigma_are_those_of_the_library() {
+fn a_fit_with_weights_by_sigma_equals_that_of_the_library() {
     use std::fmt::Write as _;
     let mut text = "psi_deg,theta_deg,brdf_per_sr,sigma_per_sr\n".to_owned();
     for row in 0..90 {
@@ -347,8 +361,8 @@ fn weights_by_sigma_are_those_of_the_library() {
     }
     let mut window = empty();
     drop_file(&mut window, "sigma.csv", &text);
-    click(&mut window, "Settings of the fit");
-    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    click(&mut window, "Fit settings");
+    click_role(&mut window, Role::ComboBox, "Reading weights");
     click(&mut window, "1/sigma²");
     click(&mut window, "Both stages");
     let scan = Measurements::from_reader(text.as_bytes()).unwrap();
@@ -361,31 +375,31 @@ fn weights_by_sigma_are_those_of_the_library() {
     check_same(&window, &Report::new(&scan, &options, Depth::Assessed).0);
     let e = report(&window).fit.unwrap().e_percent;
     assert_ne!(e, plain.e_percent);
-    // And E of the sliders is with the same weights.
-    let words = format!("E = {} %", brdf_fit::format::digits(e));
-    assert!(window.query_by_label(&words).is_some(), "{words}");
+    // E of the current parameters has the same weights.
+    let text = format!("E = {} %", brdf_fit::format::digits(e));
+    assert!(window.query_by_label(&text).is_some(), "{text}");
 }
 
 #[test]
-fn a_failed_fit_is_told_beside_the_tables_of_the_one_before() {
+fn a_failed_fit_is_reported_above_the_tables_of_the_previous_one() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
-    click(&mut window, "Settings of the fit");
-    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    click(&mut window, "Fit settings");
+    click_role(&mut window, Role::ComboBox, "Reading weights");
     click(&mut window, "1/sigma²");
     click(&mut window, "Both stages");
     assert!(shows(&window, "The last fit failed"));
-    assert!(shows(&window, "These tables are of the fit before it."));
-    click_role(&mut window, Role::ComboBox, "Weights of readings");
+    assert!(shows(&window, "The tables show the previous fit."));
+    click_role(&mut window, Role::ComboBox, "Reading weights");
     click(&mut window, "none");
     click(&mut window, "Both stages");
     assert!(!shows(&window, "The last fit failed"));
 }
 
 #[test]
-fn a_fit_of_another_wavelength_can_be_saved() {
+fn a_fit_of_a_wavelength_that_is_not_shown_can_be_saved() {
     let mut window = with_z307();
-    let save = Command::Export(Export::Fit);
+    let save = Command::Export(OutputKind::Fit);
     assert!(!window.state().state.is_enabled(save));
     click(&mut window, "Both stages");
     let id = window.state().state.active.unwrap();
@@ -395,20 +409,20 @@ fn a_fit_of_another_wavelength_can_be_saved() {
 }
 
 #[test]
-fn a_model_for_all_scans_is_fitted_to_all_of_them() {
+fn a_model_set_for_all_scans_is_fitted_to_all_of_them() {
     let mut window = with_z307();
     open_built_in(&mut window, "titanium_anodise.csv");
-    let wish = |window: &mut Window, intent| {
+    let apply = |window: &mut Window, intent| {
         window.state_mut().state.apply(intent);
         settle(window);
     };
     let model = brdf_fit::model::Model::PowerN;
-    wish(&mut window, Intent::Model(model, Scope::All));
-    wish(&mut window, Intent::Fit(Stages::Both, Scope::All));
+    apply(&mut window, Intent::Model(model, Scope::All));
+    apply(&mut window, Intent::Fit(Stages::Both, Scope::All));
     let mut scans = 0;
     for sample in &window.state().state.samples {
         for scan in &sample.scans {
-            let fit = scan.fitted.as_ref().unwrap().fit.as_ref().unwrap();
+            let fit = scan.last_fit.as_ref().unwrap().fit.as_ref().unwrap();
             assert_eq!(fit.model(), model);
             scans += 1;
         }

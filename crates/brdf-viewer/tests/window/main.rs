@@ -1,9 +1,10 @@
-//! The window without a display: every control by mouse or keyboard, its effect read back.
+//! Tests of the window without a display: each uses controls by mouse or keyboard, and reads the
+//! effect back from the state or from the painted shapes.
 
 mod commands;
 mod common;
+mod display;
 mod files;
 mod fitting;
-mod look;
+mod parameters;
 mod snapshots;
-mod turn;

@@ -1,7 +1,7 @@
-//! Pictures of the window, drawn by the processor: the same pixels on every machine.
+//! Snapshots of the window. They are rendered on the CPU, with the same pixels on every machine.
 //!
-//! `UPDATE_SNAPSHOTS=1 cargo test -p brdf-viewer --test window snapshots` draws them anew; look at
-//! each.
+//! `UPDATE_SNAPSHOTS=1 cargo test -p brdf-viewer --test window snapshots` updates them; inspect each
+//! changed one.
 
 use crate::common::{NoDialogs, Window, drop_file, settle, window_with};
 use brdf_viewer::intent::{Command, Intent};
@@ -9,7 +9,7 @@ use brdf_viewer::state::saved::Settings;
 
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 
-/// Six states of the window.
+/// The states of the window of which there are snapshots.
 const STATES: [&str; 6] = [
     "empty",
     "loaded",
@@ -20,23 +20,23 @@ const STATES: [&str; 6] = [
 ];
 
 fn bring_to(window: &mut Window, state: &str) {
-    let mut wish = |intent: Intent| {
+    let mut apply = |intent: Intent| {
         window.state_mut().state.apply(intent);
         settle(window);
     };
     if state == "empty" {
         return;
     }
-    wish(Intent::OpenBuiltIn(0));
+    apply(Intent::OpenBuiltIn(0));
     if state != "loaded" {
-        wish(Intent::Do(Command::Fit));
+        apply(Intent::Command(Command::Fit));
     }
     match state {
         "logarithmic" => {
-            wish(Intent::Do(Command::Logarithmic));
-            wish(Intent::Do(Command::Residuals));
+            apply(Intent::Command(Command::Logarithmic));
+            apply(Intent::Command(Command::Residuals));
         }
-        "panels" => wish(Intent::Do(Command::Panels)),
+        "panels" => apply(Intent::Command(Command::Panels)),
         "error" => {
             let text = "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n10,95,0.2\n";
             drop_file(window, "lacquer.csv", text);
@@ -50,7 +50,7 @@ fn check(dark: bool) {
     let mut results = Vec::new();
     for size in SIZES {
         for state in STATES {
-            let mut window = window_with(size, NoDialogs, Settings::unkept());
+            let mut window = window_with(size, NoDialogs, Settings::in_memory());
             window.state_mut().state.interface.dark = Some(dark);
             bring_to(&mut window, state);
             mask_times(&mut window);
@@ -65,7 +65,7 @@ fn check(dark: bool) {
     }
 }
 
-/// Times differ from run to run: they are made alike.
+/// Replaces times, which differ from run to run.
 fn mask_times(window: &mut Window) {
     let state = &mut window.state_mut().state;
     "ready".clone_into(&mut state.status);
@@ -74,7 +74,7 @@ fn mask_times(window: &mut Window) {
         .iter_mut()
         .flat_map(|sample| &mut sample.scans)
     {
-        let Some(report) = &mut scan.fitted else {
+        let Some(report) = &mut scan.last_fit else {
             continue;
         };
         let fit = std::sync::Arc::make_mut(report).fit.as_mut().unwrap();

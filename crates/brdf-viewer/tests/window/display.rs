@@ -1,4 +1,4 @@
-//! How the data are looked at: what is shown, axes, layouts, zoom, hover.
+//! The view of the data: visible incidences and samples, axes, layouts, zoom and tooltips.
 
 use crate::common::{
     NoDialogs, Window, click, click_role, colour_of, drop_file, empty, menu, open_built_in,
@@ -45,22 +45,22 @@ fn a_check_box_hides_an_incidence() {
             .active_sample()
             .unwrap()
             .scan()
-            .shown_psi()
+            .visible_psi()
             .len()
     };
     assert_eq!(shown(&window), 5);
     click(&mut window, "70°");
     assert_eq!(shown(&window), 4);
     assert!(painted_lines(&window, colour).is_empty());
-    click(&mut window, "none incidences");
+    click(&mut window, "hide all incidences");
     assert_eq!(shown(&window), 0);
-    click(&mut window, "all incidences");
+    click(&mut window, "show all incidences");
     assert_eq!(shown(&window), 5);
     assert!(!painted_lines(&window, colour).is_empty());
 }
 
 #[test]
-fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
+fn the_logarithmic_axis_shows_logarithms_and_counts_readings_without_one() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
     let colour = colour_of(&window, 0);
@@ -72,10 +72,10 @@ fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
         Some(Toggled::True)
     );
     assert_eq!(painted_marks(&window, colour).len(), marks - 1);
-    let words = "1 reading <= 0 cannot be shown on a logarithmic axis";
-    assert!(shows(&window, words));
+    let text = "1 reading <= 0 cannot be shown on a logarithmic axis";
+    assert!(shows(&window, text));
     let scan = window.state().state.active_sample().unwrap().scan();
-    let brdf = scan.knobs.brdf().unwrap();
+    let brdf = scan.parameters.brdf().unwrap();
     let pixel = plot(&window, "theory").transform().dvalue_dpos()[1].abs();
     for point in painted_curve(&window, "theory", colour) {
         let at = brdf_core::Geometry::in_plane(scan.incidences[0].psi, point.x.to_radians());
@@ -85,27 +85,27 @@ fn the_logarithmic_axis_shows_logarithms_and_counts_what_it_cannot_show() {
 }
 
 #[test]
-fn another_plane_than_that_of_incidence() {
+fn another_plane_than_the_plane_of_incidence_is_shown() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
-    assert!(shows(&window, "4 readings out of this plane"));
+    assert!(shows(&window, "4 readings outside this plane"));
     click_role(&mut window, Role::ComboBox, "plane of view");
     click(&mut window, "phi = 90° / 270°");
     let state = &window.state().state;
     assert!((state.view.azimuth.to_degrees() - 90.0).abs() < 1e-9);
     let id = state.active_sample().unwrap().scan_id();
-    let shown: Vec<f64> = state.shown.curves(id)[0]
+    let shown: Vec<f64> = state.derived.curves(id)[0]
         .readings
         .iter()
         .map(|r| r.theta_deg)
         .collect();
-    // The normal is in every plane.
+    // The direction of the normal is in every plane.
     assert_eq!(shown.len(), 4);
     assert!(
         (shown[0] + 40.0).abs() < 1e-9 && (shown[3] - 40.0).abs() < 1e-9,
         "{shown:?}"
     );
-    assert!(shows(&window, "4 readings out of this plane"));
+    assert!(shows(&window, "4 readings outside this plane"));
 }
 
 #[test]
@@ -127,12 +127,12 @@ fn error_bars_are_painted_where_sigma_is_given() {
 }
 
 #[test]
-fn the_quantity_and_the_side_are_chosen() {
+fn the_quantity_and_the_positive_side_are_chosen() {
     let mut window = with_z307();
     let first = |window: &Window| {
         let state = &window.state().state;
         let id = state.active_sample().unwrap().scan_id();
-        state.shown.curves(id)[4].readings[0]
+        state.derived.curves(id)[4].readings[0]
     };
     let plain = first(&window);
     click(&mut window, "× cos θ");
@@ -145,13 +145,13 @@ fn the_quantity_and_the_side_are_chosen() {
     assert_eq!(window.state().state.view.theta_positive, Side::Forward);
     let state = &window.state().state;
     let id = state.active_sample().unwrap().scan_id();
-    let last = *state.shown.curves(id)[4].readings.last().unwrap();
+    let last = *state.derived.curves(id)[4].readings.last().unwrap();
     assert_eq!(last.theta_deg, -with_cosine.theta_deg);
     assert_eq!(last.value, with_cosine.value);
 }
 
 #[test]
-fn residuals_share_the_view_angle() {
+fn residuals_share_the_range_of_view_angles() {
     let mut window = with_z307();
     click(&mut window, "residuals");
     assert!(window.query_by_label("Residual plot").is_some());
@@ -171,7 +171,7 @@ fn zoom_at(window: &mut Window, label: &str) {
 }
 
 #[test]
-fn zoom_pan_and_reset() {
+fn a_plot_is_zoomed_panned_and_reset() {
     let mut window = with_z307();
     let whole = *plot(&window, "theory").bounds();
     zoom_at(&mut window, "BRDF plot");
@@ -195,7 +195,7 @@ fn zoom_pan_and_reset() {
 }
 
 #[test]
-fn small_multiples_have_one_plot_an_incidence_with_the_same_axes() {
+fn panels_show_one_plot_per_incidence_with_the_same_axes() {
     let mut window = with_z307();
     click(&mut window, "Panels");
     assert_eq!(window.state().state.view.layout, Layout::Panels);
@@ -207,11 +207,11 @@ fn small_multiples_have_one_plot_an_incidence_with_the_same_axes() {
 }
 
 #[test]
-fn the_polar_form_has_f_r_as_radius() {
+fn the_polar_plot_has_f_r_as_radius() {
     let mut window = with_z307();
     click(&mut window, "Polar");
     let scan = window.state().state.active_sample().unwrap().scan();
-    let (psi, brdf) = (scan.incidences[2].psi, scan.knobs.brdf().unwrap());
+    let (psi, brdf) = (scan.incidences[2].psi, scan.parameters.brdf().unwrap());
     let pixel = plot(&window, "polar").transform().dvalue_dpos()[0].abs();
     let curve = painted_curve(&window, "polar", colour_of(&window, 2));
     assert!(curve.len() > 100);
@@ -229,29 +229,29 @@ fn the_polar_form_has_f_r_as_radius() {
 }
 
 #[test]
-fn the_pointer_reads_out_what_it_is_at() {
+fn the_tooltip_shows_the_reading_at_the_pointer() {
     let mut window = with_z307();
     let state = &window.state().state;
     let id = state.active_sample().unwrap().scan_id();
-    let reading = state.shown.curves(id)[4].readings[2];
+    let reading = state.derived.curves(id)[4].readings[2];
     let transform = plot(&window, "theory").transform();
     let at = transform.position_from_point(&PlotPoint::new(reading.theta_deg, reading.value));
     window.hover_at(at);
     window.run();
     let digits = brdf_fit::format::digits;
-    for words in [
+    for text in [
         "psi 70°".to_owned(),
         format!("theta {:.2}°", reading.theta_deg),
         format!("measured {}", digits(reading.value)),
         format!("theory {}", digits(reading.theory)),
         format!("difference {}", digits(reading.residual())),
     ] {
-        assert!(shows(&window, &words), "{words}");
+        assert!(shows(&window, &text), "{text}");
     }
 }
 
 #[test]
-fn several_samples_are_shown_and_hidden_each_in_its_colours() {
+fn samples_are_shown_and_hidden_each_in_its_own_colours() {
     let mut window = with_z307();
     open_built_in(&mut window, "titanium_anodise.csv");
     open_built_in(&mut window, "Table 1, 001 at 0.91 um");
@@ -259,10 +259,10 @@ fn several_samples_are_shown_and_hidden_each_in_its_colours() {
     let families: Vec<usize> = state.samples.iter().map(|sample| sample.family).collect();
     assert_eq!(families, [0, 1, 2]);
     assert_eq!(state.visible().count(), 3);
-    // Theory alone has lines and no readings.
+    // A theory without readings has lines and no marks.
     let theory = state.active_sample().unwrap();
-    assert_eq!(theory.scan().readings(), 0);
-    assert_eq!(state.shown.curves(theory.scan_id()).len(), 5);
+    assert_eq!(theory.scan().reading_count(), 0);
+    assert_eq!(state.derived.curves(theory.scan_id()).len(), 5);
     let colour = colour_of(&window, 2);
     assert!(!painted_lines(&window, colour).is_empty());
     click(&mut window, "show Table 1, 001 at 0.91 um");
@@ -276,12 +276,12 @@ fn several_samples_are_shown_and_hidden_each_in_its_colours() {
 }
 
 #[test]
-fn the_tabs_show_what_can_be_plotted_of_a_fit() {
+fn the_tabs_plot_the_results_of_a_fit() {
     let mut window = with_z307();
     click(&mut window, "Both stages");
     let scan = window.state().state.active_sample().unwrap().scan();
-    let fit = scan.fitted.as_ref().unwrap().fit.clone().unwrap();
-    let first = theme::plain(0, Ground::Light);
+    let fit = scan.last_fit.as_ref().unwrap().fit.clone().unwrap();
+    let first = theme::series_colour(0, Ground::Light);
     click(&mut window, "E against iteration");
     let (line, numbers) = painted_result(&window, "plot of E against iteration", first);
     let iterations = fit.stage1.unwrap().iterations;
@@ -291,7 +291,7 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
     let (line, numbers) = painted_result(&window, "plot of the profile of k1", first);
     let profile = fit.global_check.unwrap().profile;
     assert_eq!(line.len(), profile.len());
-    // The lowest point that is painted is the lowest E.
+    // The lowest painted point is that of the lowest E.
     let lowest = (0..line.len()).max_by(|a, b| line[*a].y.total_cmp(&line[*b].y));
     let error = |i: &usize| profile[*i].error;
     let expected = (0..profile.len()).min_by(|a, b| error(a).total_cmp(&error(b)));
@@ -302,7 +302,7 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
     let (line, numbers) = painted_result(&window, name, first);
     let state = &window.state().state;
     let rho = state
-        .shown
+        .derived
         .reflectance(state.active_sample().unwrap().scan_id());
     assert_eq!(line.len(), rho.len());
     let last = rho.len() - 1;
@@ -311,7 +311,7 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
         let expected = f64::from(line[0].y) + slope * (value - rho[0][1]);
         assert!((f64::from(at.y) - expected).abs() < 0.5, "{at:?}");
     }
-    // Evenly spaced ones, at the lines of the grid that have room for them.
+    // The labels are evenly spaced.
     let values: Vec<f64> = numbers.iter().map(|text| text.parse().unwrap()).collect();
     let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(steps.len() > 5, "{values:?}");
@@ -320,7 +320,7 @@ fn the_tabs_show_what_can_be_plotted_of_a_fit() {
     assert!(shows(&window, "verdict"));
 }
 
-/// The longest line of a colour in a plot of the results, and the numbers below the plot.
+/// The longest line of a colour in a plot of the results, and the labels below the plot.
 fn painted_result(
     window: &Window,
     name: &str,
@@ -343,7 +343,7 @@ fn painted_result(
 }
 
 #[test]
-fn readings_without_a_place_are_counted_before_they_are_thinned() {
+fn readings_without_a_position_are_counted_before_thinning() {
     use std::fmt::Write as _;
     let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
     for i in 0..9000 {
@@ -353,12 +353,12 @@ fn readings_without_a_place_are_counted_before_they_are_thinned() {
     let mut window = empty();
     drop_file(&mut window, "noisy.csv", &text);
     click(&mut window, "log");
-    let words = "3000 readings <= 0 cannot be shown on a logarithmic axis";
-    assert!(shows(&window, words));
+    let text = "3000 readings <= 0 cannot be shown on a logarithmic axis";
+    assert!(shows(&window, text));
 }
 
 #[test]
-fn one_huge_sigma_does_not_set_the_axis() {
+fn one_huge_sigma_does_not_determine_the_range_of_the_axis() {
     let mut window = empty();
     let tops = |window: &mut Window, text: &str| {
         drop_file(window, "two.csv", text);
@@ -381,7 +381,7 @@ fn the_mirror_direction_is_a_dashed_line() {
     let window = with_z307();
     let scan = window.state().state.active_sample().unwrap().scan();
     let transform = transform_of(&window, "theory");
-    for (i, psi) in scan.shown_psi().into_iter().enumerate() {
+    for (i, psi) in scan.visible_psi().into_iter().enumerate() {
         let dashes = painted_segments(&window, colour_of(&window, i).gamma_multiply(0.6));
         assert!(dashes.len() > 10, "{i}");
         for at in dashes.into_iter().flatten() {
@@ -392,7 +392,7 @@ fn the_mirror_direction_is_a_dashed_line() {
 }
 
 #[test]
-fn the_band_is_painted_one_standard_error_to_both_sides() {
+fn the_band_extends_one_standard_error_to_both_sides() {
     let mut window = with_z307();
     let faint = colour_of(&window, 1).gamma_multiply(0.25);
     assert!(painted_areas(&window, faint).is_empty());
@@ -400,7 +400,9 @@ fn the_band_is_painted_one_standard_error_to_both_sides() {
     let area = painted_areas(&window, faint).concat();
     let transform = transform_of(&window, "theory");
     let state = &window.state().state;
-    let curve = &state.shown.curves(state.active_sample().unwrap().scan_id())[1];
+    let curve = &state
+        .derived
+        .curves(state.active_sample().unwrap().scan_id())[1];
     assert_eq!(area.len(), 2 * curve.theory.len());
     let pixel = transform.dvalue_dpos()[1].abs();
     for (theory, ends) in curve.theory.iter().zip(area.chunks(2)) {
@@ -413,7 +415,7 @@ fn the_band_is_painted_one_standard_error_to_both_sides() {
 }
 
 #[test]
-fn residuals_are_painted_where_they_are() {
+fn residuals_are_painted_at_their_values() {
     let mut window = with_z307();
     click(&mut window, "residuals");
     let transform = transform_of(&window, "residuals");
@@ -423,7 +425,9 @@ fn residuals_are_painted_where_they_are() {
         .filter(|at| transform.frame().contains(*at));
     let painted: Vec<PlotPoint> = inside.map(|at| transform.value_from_position(at)).collect();
     let state = &window.state().state;
-    let curve = &state.shown.curves(state.active_sample().unwrap().scan_id())[3];
+    let curve = &state
+        .derived
+        .curves(state.active_sample().unwrap().scan_id())[3];
     assert_eq!(painted.len(), curve.readings.len());
     let pixel = transform.dvalue_dpos()[1].abs();
     for (at, reading) in painted.iter().zip(&curve.readings) {
@@ -433,7 +437,7 @@ fn residuals_are_painted_where_they_are() {
 }
 
 #[test]
-fn a_rectangle_is_zoomed_into_and_a_double_click_shows_everything() {
+fn a_plot_zooms_into_a_rectangle_and_a_double_click_resets_it() {
     let mut window = with_z307();
     let whole = *plot(&window, "theory").bounds();
     let frame = *transform_of(&window, "theory").frame();
@@ -446,7 +450,7 @@ fn a_rectangle_is_zoomed_into_and_a_double_click_shows_everything() {
         pressed,
         modifiers: egui::Modifiers::NONE,
     };
-    // The rectangle begins where it becomes clear that it is one.
+    // The rectangle starts where the pointer has moved far enough for a drag.
     let before = corners[0] - egui::vec2(10.0, 10.0);
     window.hover_at(before);
     window.step();
@@ -476,7 +480,7 @@ fn a_rectangle_is_zoomed_into_and_a_double_click_shows_everything() {
 }
 
 #[test]
-fn the_theme_is_switched_whatever_the_system_says_and_given_back_to_it() {
+fn the_theme_is_toggled_from_that_of_the_system_and_can_follow_it_again() {
     let mut window = with_z307();
     window.state_mut().state.interface.dark = None;
     for system in [egui::Theme::Dark, egui::Theme::Light] {
@@ -490,14 +494,14 @@ fn the_theme_is_switched_whatever_the_system_says_and_given_back_to_it() {
         assert_ne!(seen(&mut window), system);
         window.key_press(egui::Key::F9);
         assert_eq!(seen(&mut window), system);
-        menu(&mut window, "View", "Dark or light as the system");
+        menu(&mut window, "View", "Theme of the system");
         assert_eq!(window.state().state.interface.dark, None);
         assert_eq!(seen(&mut window), system);
     }
 }
 
 #[test]
-fn a_long_status_stays_clear_of_the_buttons() {
+fn a_long_status_does_not_overlap_the_buttons() {
     let mut window = with_z307();
     let long = "/a/very/long/path".repeat(40);
     window.state_mut().state.status = long.clone();
@@ -510,35 +514,39 @@ fn a_long_status_stays_clear_of_the_buttons() {
 }
 
 #[test]
-fn the_pointer_reads_out_the_theory_between_readings() {
+fn the_tooltip_shows_the_theory_between_readings() {
     let mut window = empty();
     open_built_in(&mut window, "Table 1, 001 at 0.91 um");
     let state = &window.state().state;
-    let curve = &state.shown.curves(state.active_sample().unwrap().scan_id())[1];
+    let curve = &state
+        .derived
+        .curves(state.active_sample().unwrap().scan_id())[1];
     let theory = curve.theory[250];
     let transform = transform_of(&window, "theory");
     let at = PlotPoint::new(theory.theta_deg, theory.value);
     window.hover_at(transform.position_from_point(&at));
     window.run();
-    for words in [
+    for text in [
         "psi 30°".to_owned(),
         format!("theta {:.2}°", theory.theta_deg),
         format!("theory {}", brdf_fit::format::digits(theory.value)),
     ] {
-        assert!(shows(&window, &words), "{words}");
+        assert!(shows(&window, &text), "{text}");
     }
     assert!(!shows(&window, "measured") && !shows(&window, ", phi"));
 }
 
 #[test]
-fn the_pointer_tells_the_azimuth_where_there_is_one() {
+fn the_tooltip_shows_the_azimuth_outside_the_plane_of_incidence() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
     click_role(&mut window, Role::ComboBox, "plane of view");
     click(&mut window, "phi = 90° / 270°");
     for (reading, phi) in [(0, ", phi 270°"), (3, ", phi 90°")] {
         let state = &window.state().state;
-        let curve = &state.shown.curves(state.active_sample().unwrap().scan_id())[0];
+        let curve = &state
+            .derived
+            .curves(state.active_sample().unwrap().scan_id())[0];
         let reading = curve.readings[reading];
         let transform = transform_of(&window, "theory");
         let at = PlotPoint::new(reading.theta_deg, reading.value);
@@ -549,20 +557,20 @@ fn the_pointer_tells_the_azimuth_where_there_is_one() {
 }
 
 #[test]
-fn the_axes_keep_their_names_and_units_in_a_small_window_and_in_panels() {
-    let mut window = window_with([900.0, 600.0], NoDialogs, Settings::unkept());
+fn the_axes_have_names_and_units_in_a_small_window_and_in_panels() {
+    let mut window = window_with([900.0, 600.0], NoDialogs, Settings::in_memory());
     open_built_in(&mut window, "z307_on_aluminium.csv");
     for layout in ["Together", "Panels", "Polar"] {
         click(&mut window, layout);
         let texts = painted_texts(&window);
-        let has = |words: &str| texts.iter().any(|(text, _)| text.contains(words));
+        let has = |part: &str| texts.iter().any(|(text, _)| text.contains(part));
         assert!(has("(1/sr)"), "{layout}");
         assert!(has("theta / deg") || layout == "Polar", "{layout}");
     }
 }
 
 #[test]
-fn the_polar_form_has_no_negative_radius_and_counts_what_has_none() {
+fn the_polar_plot_omits_and_counts_negative_readings() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
     let colour = colour_of(&window, 0);
@@ -580,7 +588,7 @@ fn the_polar_form_has_no_negative_radius_and_counts_what_has_none() {
 }
 
 #[test]
-fn the_polar_form_has_a_band() {
+fn the_polar_plot_has_a_band() {
     let mut window = with_z307();
     click(&mut window, "Polar");
     click(&mut window, "Both stages");
@@ -589,7 +597,9 @@ fn the_polar_form_has_a_band() {
     let transform = transform_of(&window, "polar");
     let pixel = transform.dvalue_dpos()[0].abs();
     let state = &window.state().state;
-    let curve = &state.shown.curves(state.active_sample().unwrap().scan_id())[2];
+    let curve = &state
+        .derived
+        .curves(state.active_sample().unwrap().scan_id())[2];
     for (theory, ends) in curve.theory.iter().zip(area.chunks(2)) {
         let (sin, cos) = theory.theta_deg.to_radians().sin_cos();
         for (end, sign) in ends.iter().zip([-1.0, 1.0]) {

@@ -1,0 +1,76 @@
+//! Dispatches intents of the user and events of the worker to the operations of the state.
+
+use super::State;
+use crate::intent::Intent;
+use crate::job::Event;
+
+impl State {
+    /// Carries out a request of the user.
+    pub fn apply(&mut self, intent: Intent) {
+        match intent {
+            Intent::Command(command) => self.command(command),
+            Intent::Open(paths) => self.open(paths),
+            Intent::OpenBytes(name, bytes) => self.open_bytes(name, bytes),
+            Intent::OpenBuiltIn(entry) => self.open_built_in(entry),
+            Intent::Close(id) => self.close(id),
+            Intent::ShowSample(id, visible) => self.change(id, |s| s.visible = visible),
+            Intent::Activate(id) => self.activate(id),
+            Intent::Wavelength(id, wavelength) => self.select_wavelength(id, wavelength),
+            Intent::ShowIncidence(id, i, visible) => self.change(id, |sample| {
+                if let Some(incidence) = sample.scan_mut().incidences.get_mut(i) {
+                    incidence.visible = visible;
+                }
+            }),
+            Intent::ShowAllIncidences(id, visible) => self.change(id, |sample| {
+                for incidence in &mut sample.scan_mut().incidences {
+                    incidence.visible = visible;
+                }
+            }),
+            Intent::Convention(convention) => self.convention = convention,
+            Intent::View(view) => self.view = view,
+            Intent::PlotColumns(columns) => self.columns = columns,
+            Intent::SetParameters(parameters) => self.set_parameters(parameters),
+            Intent::Model(model, scope) => self.set_model(model, scope),
+            Intent::Reset(parameter) => self.reset(parameter),
+            Intent::FitSettings(settings) => self.fit_settings = settings,
+            Intent::Fit(stages, scope) => self.fit(stages, scope),
+            Intent::Write(kind, path) => self.write(kind, path),
+            Intent::Tab(tab) => self.interface.tab = tab,
+            Intent::Path(text) => self.set_path(text),
+            Intent::Confirm => self.confirm(),
+            Intent::Browse => self.browse(),
+            Intent::CloseDialog => self.dialog = None,
+            Intent::Dismiss(i) => {
+                if i < self.messages.len() {
+                    self.messages.remove(i);
+                }
+            }
+        }
+    }
+
+    /// Takes over an event of the worker or of a dialog.
+    pub fn take_event(&mut self, event: Event) {
+        match event {
+            Event::Opened(file, opened) => {
+                self.files_being_read = self.files_being_read.saturating_sub(1);
+                self.add_opened(file, opened);
+            }
+            Event::OpenFailed(error) => {
+                self.files_being_read = self.files_being_read.saturating_sub(1);
+                self.report_error(error);
+            }
+            Event::FilesChosen(paths) => self.open(paths),
+            Event::OutputChosen(kind, path) => self.write(kind, path),
+            Event::Step(scan, step) => {
+                if let Some(run) = &mut self.fit_run {
+                    run.record(scan, &step);
+                }
+            }
+            Event::Fitted(scan, report) => self.take_report(scan, *report),
+            Event::FitAborted(scan, error) => self.take_fit_error(scan, error),
+            Event::FitsEnded => self.end_run(),
+            Event::Written(path) => self.status = format!("{} written", path.display()),
+            Event::WriteFailed(error) => self.report_error(error),
+        }
+    }
+}

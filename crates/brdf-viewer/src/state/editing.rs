@@ -1,0 +1,125 @@
+//! Editing: the active sample, its parameters, and undo and redo.
+
+use brdf_fit::model::{Model, Parameter};
+
+use super::State;
+use super::fit_settings::Scope;
+use super::history::Change;
+use super::id::{SampleId, ScanId};
+use super::parameters::EditedParameters;
+use super::sample::Sample;
+
+impl State {
+    /// Ends a change of the parameters, which becomes one step of the history.
+    pub fn commit(&mut self) {
+        let Some(sample) = self.active_sample_mut() else {
+            return;
+        };
+        let id = sample.scan_id();
+        let change = sample.scan_mut().commit(id);
+        self.history.push(change.into_iter().collect());
+    }
+
+    pub(super) fn activate(&mut self, id: SampleId) {
+        if self.sample(id).is_some() {
+            self.commit();
+            self.active = Some(id);
+            self.select_plane_with_readings();
+        }
+    }
+
+    pub(super) fn select_wavelength(&mut self, id: SampleId, wavelength: usize) {
+        self.commit();
+        self.change(id, |sample| {
+            if wavelength < sample.scans.len() {
+                sample.current = wavelength;
+            }
+        });
+        self.select_plane_with_readings();
+    }
+
+    /// Selects another plane if the current one contains no readings of the active sample.
+    fn select_plane_with_readings(&mut self) {
+        let Some(planes) = self.active_sample().map(|s| s.scan().planes.clone()) else {
+            return;
+        };
+        let is_current = |plane: &f64| (plane - self.view.azimuth).abs() < 1e-6;
+        if !planes.is_empty() && !planes.iter().any(is_current) {
+            self.view.azimuth = planes[0];
+        }
+    }
+
+    pub(super) fn set_parameters(&mut self, parameters: EditedParameters) {
+        if let Some(sample) = self.active_sample_mut() {
+            sample.scan_mut().parameters = parameters;
+        }
+    }
+
+    /// Sets the model of scans. Parameters that both models have keep their values.
+    pub(super) fn set_model(&mut self, model: Model, scope: Scope) {
+        self.commit();
+        let mut changes = Vec::new();
+        for id in self.scans_in(scope) {
+            changes.extend(self.scan_mut(id).and_then(|scan| {
+                scan.parameters.model = model;
+                scan.parameters.values = model.start(scan.parameters.values);
+                scan.commit(id)
+            }));
+        }
+        self.history.push(changes);
+    }
+
+    pub(super) fn reset(&mut self, parameter: Parameter) {
+        if let Some(sample) = self.active_sample_mut() {
+            let scan = sample.scan_mut();
+            let fitted = parameter.of(&scan.fitted_parameters().values);
+            parameter.set(&mut scan.parameters.values, fitted);
+        }
+    }
+
+    pub(super) fn reset_all(&mut self) {
+        if let Some(sample) = self.active_sample_mut() {
+            let scan = sample.scan_mut();
+            scan.parameters = scan.fitted_parameters();
+            self.commit();
+        }
+    }
+
+    pub(super) fn undo(&mut self) {
+        self.commit();
+        if let Some(changes) = self.history.undo() {
+            self.restore(&changes, |change| change.before);
+        }
+    }
+
+    pub(super) fn redo(&mut self) {
+        if let Some(changes) = self.history.redo() {
+            self.restore(&changes, |change| change.after);
+        }
+    }
+
+    /// Restores the parameters of scans. If none of them is visible, activates the first one, so
+    /// that the user sees the effect.
+    fn restore(&mut self, changes: &[Change], parameters: impl Fn(&Change) -> EditedParameters) {
+        for change in changes {
+            if let Some(scan) = self.scan_mut(change.scan) {
+                scan.parameters = parameters(change);
+                scan.committed = scan.parameters;
+            }
+        }
+        let active = self.active_sample().filter(|sample| sample.visible);
+        let active = active.map(Sample::scan_id);
+        let is_seen = changes.iter().any(|change| Some(change.scan) == active);
+        if let Some(first) = changes.first().filter(|_| !is_seen) {
+            self.show(first.scan);
+        }
+    }
+
+    fn show(&mut self, scan: ScanId) {
+        self.change(scan.sample, |sample| {
+            sample.visible = true;
+            sample.current = scan.wavelength;
+        });
+        self.active = Some(scan.sample);
+    }
+}

@@ -1,0 +1,153 @@
+//! Writes files: figures, curves and fits.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use brdf_core::{AnyBrdf, Geometry, ParameterError};
+use brdf_fit::Measurements;
+use brdf_fit::output::{self, write_file};
+use brdf_fit::plot::{self, PlotError, View, figure_of, write_theory_alone};
+use brdf_fit::report::{Document, Report, write_theory};
+
+use crate::job::{FigureLayer, Output};
+use crate::output_kind::FigureFormat;
+use crate::state::parameters::EditedParameters;
+
+/// Pixels of a PNG per unit of its figure, for print quality.
+const PNG_SCALE: f32 = 3.0;
+
+/// Why a file cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub(super) enum WriteError {
+    /// The path leads to a folder, a pipe or a device.
+    #[error("{}: is not a regular file: expected a file to write to", .0.display())]
+    NotRegular(PathBuf),
+    /// The parameters of a sample in a figure are outside the domain of the model.
+    #[error("{sample}: {error}")]
+    Sample {
+        /// The name of the sample.
+        sample: String,
+        /// The parameter.
+        error: ParameterError,
+    },
+    /// The parameters are outside the domain of the model.
+    #[error(transparent)]
+    Parameters(#[from] ParameterError),
+    /// The figure cannot be drawn.
+    #[error(transparent)]
+    Figure(#[from] PlotError),
+    /// The curves cannot be formatted.
+    #[error(transparent)]
+    Curves(#[from] io::Error),
+    /// The fits cannot be formatted.
+    #[error(transparent)]
+    Fits(#[from] serde_json::Error),
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] output::WriteError),
+}
+
+/// Writes a file. It is replaced only when it is complete.
+///
+/// # Errors
+///
+/// The output cannot be drawn or formatted, or the file cannot be written.
+pub(super) fn write(path: &Path, output: &Output) -> Result<(), WriteError> {
+    // Writing to a pipe could block this thread, and all following jobs, forever.
+    if path.exists() && !path.is_file() {
+        return Err(WriteError::NotRegular(path.to_owned()));
+    }
+    let bytes = match output {
+        Output::Figure(format, layers, view) => figure(*format, layers, view)?,
+        Output::Curves(measurements, parameters, psi) => curves(measurements, parameters, psi)?,
+        Output::Fit(reports) => fits(reports)?,
+    };
+    write_file(path, |writer| writer.write_all(&bytes))?;
+    Ok(())
+}
+
+/// The standard error of the theory at a geometry, in 1/sr.
+type Band<'a> = Box<dyn Fn(&Geometry) -> f64 + 'a>;
+
+fn figure(
+    format: FigureFormat,
+    layers: &[FigureLayer],
+    view: &View,
+) -> Result<Vec<u8>, WriteError> {
+    let brdfs = brdfs(layers)?;
+    let bands: Vec<Option<Band>> = layers
+        .iter()
+        .zip(&brdfs)
+        .map(|(layer, brdf)| {
+            let uncertainty = layer.fit.as_ref()?.uncertainty.as_ref()?;
+            let band = move |at: &Geometry| uncertainty.band(brdf, at);
+            Some(Box::new(band) as Band)
+        })
+        .collect();
+    let layers: Vec<plot::Layer> = layers
+        .iter()
+        .zip(&brdfs)
+        .zip(&bands)
+        .map(|((layer, brdf), band)| plot::Layer {
+            name: layer.name.clone(),
+            measurements: &layer.measurements,
+            brdf: *brdf,
+            theory: parameters_as_text(&layer.parameters),
+            sigma: band.as_deref(),
+            incidences: Some(&layer.incidences),
+            family: layer.family,
+        })
+        .collect();
+    let figure = figure_of(&layers, view);
+    Ok(match format {
+        FigureFormat::Svg => figure.svg.into_bytes(),
+        FigureFormat::Png => figure.png(PNG_SCALE)?,
+    })
+}
+
+fn brdfs(layers: &[FigureLayer]) -> Result<Vec<AnyBrdf>, WriteError> {
+    let brdf = |layer: &FigureLayer| {
+        brdf(&layer.parameters).map_err(|error| WriteError::Sample {
+            sample: layer.name.clone(),
+            error,
+        })
+    };
+    layers.iter().map(brdf).collect()
+}
+
+fn brdf(parameters: &EditedParameters) -> Result<AnyBrdf, ParameterError> {
+    AnyBrdf::new(parameters.model.family(), &parameters.values)
+}
+
+/// The name of the model and its parameters.
+fn parameters_as_text(parameters: &EditedParameters) -> String {
+    let all = parameters.model_parameters().into_iter();
+    let values: Vec<String> = all
+        .map(|p| format!("{p} = {:.4}", p.of(&parameters.values)))
+        .collect();
+    format!("{}: {}", parameters.model, values.join(", "))
+}
+
+fn curves(
+    measurements: &Measurements,
+    parameters: &EditedParameters,
+    psi: &[f64],
+) -> Result<Vec<u8>, WriteError> {
+    let brdf = brdf(parameters)?;
+    let mut bytes = Vec::new();
+    if measurements.readings().is_empty() {
+        write_theory_alone(&measurements.source, &brdf, psi, &mut bytes)?;
+    } else {
+        write_theory(measurements, &brdf, &mut bytes)?;
+    }
+    Ok(bytes)
+}
+
+fn fits(reports: &[Arc<Report>]) -> Result<Vec<u8>, WriteError> {
+    let reports = reports.iter().map(|report| (**report).clone()).collect();
+    let mut bytes = serde_json::to_vec_pretty(&Document::new(reports))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}

@@ -2,7 +2,7 @@
 
 use brdf_fit::Measurements;
 use brdf_fit::read::ReadOptions;
-use brdf_fit::scan::{Format, Side};
+use brdf_fit::{Format, Side};
 
 /// Reads the bytes in a format, or in the format that is detected: as they are, with the angular
 /// convention reversed, and with 3 readings kept. The result is an error, or readings in the model's

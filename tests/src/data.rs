@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use brdf_core::published::{PUBLISHED, PublishedSample};
-use brdf_fit::scan::synthetic::scan;
+use brdf_fit::synthetic::scan;
 
 use crate::{generator, normal};
 

@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use brdf_fit::model::Model;
+use brdf_fit::Model;
 use brdf_fit::plot::report_figures;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, RefractiveIndex};

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use brdf_fit::inference::{Assessment, Candidate};
 use brdf_fit::report::{Depth, ModelTableFormat, Report, model_table};
+use brdf_fit::{Assessment, Candidate};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
 use rayon::prelude::*;
 

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Output, Stdio};
 
 use brdf_core::Parameters;
+use brdf_fit::Format;
 use brdf_fit::read::ReadOptions;
 use brdf_fit::report::Document;
-use brdf_fit::scan::Format;
 use brdf_fit::{Measurement, Measurements};
 use brdf_tests::{export_command, fit_command, in_workspace, run_fit};
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use brdf_fit::model::Model;
+use brdf_fit::Model;
 use brdf_fit::{FitOptions, RefractiveIndex, fit};
 use brdf_tests::{in_workspace, one_wavelength, shared_data};
 

@@ -3,7 +3,7 @@
 
 use brdf_core::published::PUBLISHED;
 use brdf_core::{Parameters, ThreeParameterBrdf};
-use brdf_fit::scan::synthetic::scan;
+use brdf_fit::synthetic::scan;
 use brdf_fit::{FitOptions, Measurement, Measurements, RefractiveIndex, fit};
 use brdf_tests::{generator, normal};
 use nalgebra::{Matrix3, Vector3};

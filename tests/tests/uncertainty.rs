@@ -3,12 +3,12 @@
 
 use brdf_core::published::PUBLISHED;
 use brdf_core::{Geometry, Parameters, ThreeParameterBrdf};
-use brdf_fit::fit::robust::Loss;
-use brdf_fit::inference::Knowledge;
-use brdf_fit::model::Parameter;
-use brdf_fit::objective::weights::Weights;
+use brdf_fit::Knowledge;
+use brdf_fit::Loss;
+use brdf_fit::Parameter;
+use brdf_fit::Weights;
 use brdf_fit::report::{Depth, Report};
-use brdf_fit::scan::synthetic::scan;
+use brdf_fit::synthetic::scan;
 use brdf_fit::{FitOptions, Measurement, Measurements, RefractiveIndex};
 use brdf_tests::{expected_optima, generator, in_workspace, normal, one_wavelength};
 

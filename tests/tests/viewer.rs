@@ -4,7 +4,7 @@
 use std::process::Output;
 
 use brdf_core::ModelParameters;
-use brdf_fit::fit::Fit;
+use brdf_fit::Fit;
 use brdf_fit::report::{Document, Report};
 use brdf_tests::{fit_command, in_workspace, viewer_command};
 use brdf_viewer::Viewer;

@@ -1,5 +1,6 @@
-//! From a goniometer scan to the parameters of [`brdf_core`]'s model, in the two stages of Li, Yan
-//! and Wu (2002) and with a check of the global optimum.
+//! Fits the three-parameter BRDF of Li, Yan and Wu (Acta Optica Sinica 22(7), 769, 2002), and its
+//! relatives, to goniometer scans: in two stages, within physical bounds, and with a check of the
+//! global optimum.
 //!
 //! ```no_run
 //! use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
@@ -15,39 +16,67 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The data flow one way:
+//! The layers, each of which uses only those before it: `scan` holds the validated readings
+//! ([`Measurements`]), [`read`] reads files into them, `model` has the models and their parameters
+//! ([`Model`]), `objective` computes E ([`Objective`]), `solver` minimises it, `fit` runs the stages
+//! ([`FitProblem`]), `inference` adds uncertainty, cross-validation and model comparison
+//! ([`Assessment`]), and [`report`] presents the result ([`Report`]).
 //!
-//! ```text
-//! file -> read -> Measurements -> initial -> stages -> Fit -> uncertainty, assessment -> report, plot
-//!                                     |         |               |
-//!                                 objective, profile, solver    prediction, ladder of models
-//! ```
+//! An [`Observer`] receives each iteration of a fit, and may cancel it.
 //!
-//! Every step on the way can be watched, and ended: see [`watch`].
+//! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr. Degrees are used in files
+//! and on screens only, with `_deg` in the name.
 //!
-//! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; degrees stand in files and
-//! on screens only, with `_deg` in the name.
+//! # Features
+//!
+//! Without default features the crate reads and fits and nothing else. `plot` adds figures, `export`
+//! forms for other programs, `tradeoff` measured trade-offs; `cli` (the default) enables all three
+//! and adds the programs `brdf` and `fit`.
 
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "export")]
 pub mod export;
-pub mod fit;
+mod fit;
 pub mod format;
-pub mod inference;
-pub mod model;
-pub mod objective;
+mod inference;
+mod model;
+mod objective;
 pub mod output;
 #[cfg(feature = "plot")]
 pub mod plot;
-pub mod progress;
+mod progress;
 pub mod read;
 pub mod report;
-pub mod scan;
-pub mod solver;
+mod scan;
+mod solver;
 #[cfg(feature = "tradeoff")]
 pub mod tradeoff;
 
-pub use fit::{Fit, FitError, FitOptions, fit};
-pub use scan::{Measurement, Measurements, RefractiveIndex};
-pub use solver::Method;
+pub use fit::energy::{DEFAULT_LIMIT_DEG as ENERGY_LIMIT_DEG, EnergyConstraint};
+pub use fit::grid_search::{ProfilePoint, best_weights};
+pub use fit::robust::{Loss, REJECTED, Rejected, RobustFit};
+pub use fit::start::{InitialValues, WeightsRoute, WidthRoute};
+pub use fit::{
+    FORMAT_VERSION, Fit, FitError, FitOptions, FitProblem, GlobalCheck, OwnAndAll, Stage, fit,
+    fit_observed,
+};
+pub use format::ParseError;
+pub use inference::{
+    ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Estimate, Interval,
+    Knowledge, LeftOut, NOT_DESCRIBED_PERCENT, Noise, Physics, RESAMPLES, Reflectance, Spread,
+    Uncertainty, VERDICT_MARGIN, Verdict, Warning, assess,
+};
+pub use model::{
+    DEFAULT_N, FixedError, FixedParameters, K1_RANGE, Model, N_RANGE, Parameter, ReducedModel,
+};
+pub use objective::weights::{AngleWeight, Weights, solid_angles};
+pub use objective::{IncidenceError, MOST_FOLDS, NormalEquations, Objective, ObjectiveError};
+pub use progress::{Cancelled, NoObserver, Observer, Phase, Step};
+pub use read::{LazyScan, ReadError, ReadOptions};
+pub use report::{Depth, Document, DocumentError, ModelChoice, Report};
+pub use scan::{
+    Convention, Format, Incidence, Measurement, MeasurementError, Measurements, Metadata,
+    RefractiveIndex, Side, synthetic,
+};
+pub use solver::{Method, SolverError, Termination};

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use brdf_fit::Measurements;
 use brdf_fit::read::ReadOptions;
-use brdf_fit::scan::{Format, Side};
+use brdf_fit::{Format, Side};
 use proptest::prelude::*;
 
 /// Reads in every format, and in the format that is detected.

@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use brdf_fit::model::Model;
+use brdf_fit::Model;
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::NativeDialogs;
 use brdf_viewer::intent::{Command, Intent};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use brdf_fit::scan::Format;
+use brdf_fit::Format;
 
 use crate::job::Event;
 use crate::output_kind::OutputKind;

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use brdf_fit::model::{Model, Parameter};
+use brdf_fit::Convention;
 use brdf_fit::plot::View;
-use brdf_fit::scan::Convention;
+use brdf_fit::{Model, Parameter};
 
 use crate::output_kind::OutputKind;
 use crate::state::fit_settings::{FitSettings, Scope, Stages};

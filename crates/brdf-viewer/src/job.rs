@@ -4,10 +4,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use brdf_fit::Convention;
+use brdf_fit::Step;
 use brdf_fit::plot::View;
-use brdf_fit::progress::Step;
 use brdf_fit::report::{Depth, Report};
-use brdf_fit::scan::Convention;
 use brdf_fit::{FitOptions, Measurements};
 
 use crate::cancel::CancelFlag;

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use brdf_fit::model::Model;
+use brdf_fit::Model;
 use brdf_fit::output::resolved;
-use brdf_fit::scan::{Convention, Side};
+use brdf_fit::{Convention, Side};
 use brdf_viewer::Viewer;
 use brdf_viewer::dialogs::NativeDialogs;
 use brdf_viewer::intent::{Command, Intent};

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::failure::Failure;
-use crate::output::{WriteError, check_outputs, write_file};
+use crate::output::{TakenError, WriteError, check_outputs, write_file};
 use crate::read::{LazyScan, ReadError, ReadOptions};
 use crate::report::{Document, DocumentError};
 use crate::scan::Measurements;
@@ -39,6 +38,8 @@ pub(super) enum StreamError {
     },
     #[error("{0} names a folder, which cannot be - (standard output)")]
     Folder(&'static str),
+    #[error(transparent)]
+    Taken(#[from] TakenError),
 }
 
 /// Whether a path is `-`.
@@ -61,14 +62,14 @@ pub(super) fn shown(path: &Path) -> &Path {
 pub(super) fn check<'a>(
     inputs: impl IntoIterator<Item = Named<'a>>,
     outputs: impl IntoIterator<Item = Named<'a>>,
-) -> Result<(), Failure> {
+) -> Result<(), StreamError> {
     let (streams, inputs) = apart(inputs);
     if let [first, second, ..] = streams[..] {
-        return Err(StreamError::InputTwice { first, second }.into());
+        return Err(StreamError::InputTwice { first, second });
     }
     let (streams, outputs) = apart(outputs);
     if let [first, second, ..] = streams[..] {
-        return Err(StreamError::OutputTwice { first, second }.into());
+        return Err(StreamError::OutputTwice { first, second });
     }
     Ok(check_outputs(inputs, outputs)?)
 }

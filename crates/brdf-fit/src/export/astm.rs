@@ -138,10 +138,10 @@ impl Tabulated for BySphericalAngles {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Measurements;
     use crate::export::test_fits::of_paper;
     use crate::read::ReadOptions;
     use crate::scan::Format;
+    use crate::scan::Measurements;
 
     fn fitted(wavelength_um: Option<f64>, k1: f64) -> Fitted {
         Fitted {

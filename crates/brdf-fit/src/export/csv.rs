@@ -68,8 +68,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Measurements;
     use crate::export::test_fits::of_paper;
+    use crate::scan::Measurements;
 
     fn fitted(wavelength_um: Option<f64>) -> Fitted {
         Fitted {

@@ -146,10 +146,10 @@ impl Tabulated for AboutSpecular {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Measurements;
     use crate::export::test_fits::of_paper;
     use crate::read::ReadOptions;
     use crate::scan::Format;
+    use crate::scan::Measurements;
 
     fn fitted() -> Fitted {
         Fitted {

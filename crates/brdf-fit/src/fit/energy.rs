@@ -298,9 +298,10 @@ mod tests {
     use brdf_core::published::PUBLISHED;
 
     use super::*;
+    use crate::fit::{FitOptions, fit};
     use crate::model::Model;
+    use crate::scan::RefractiveIndex;
     use crate::scan::synthetic::scan;
-    use crate::{FitOptions, RefractiveIndex, fit};
 
     fn options(n: f64, limit_deg: Option<f64>, model: Model) -> FitOptions {
         FitOptions {

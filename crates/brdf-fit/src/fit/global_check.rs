@@ -3,11 +3,10 @@
 use std::time::Instant;
 
 use brdf_core::ModelParameters;
-use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
-use super::grid_search::{GridSearch, ProfilePoint};
-use super::result::Stage;
+use super::grid_search::GridSearch;
+use super::result::{GlobalCheck, Stage};
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::{Objective, ROUNDING};
 use crate::progress::{Observer, Phase, Progress};
@@ -16,22 +15,6 @@ use crate::solver::polish;
 /// A minimum counts as lower when E there is lower by more than this fraction: below it, two ways
 /// of summing the same minimum differ.
 const LOWER: f64 = 1e-9;
-
-/// What the profile search over k1 found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct GlobalCheck {
-    /// Whether the last stage had missed a lower minimum, which then was taken.
-    pub lower_minimum_taken: bool,
-    /// E of the last stage before, over the fitted readings, in percent.
-    pub stage2_e_percent: f64,
-    /// The profile over k1: the lowest E at each; a single point where the model has no k1.
-    pub profile: Vec<ProfilePoint>,
-    /// The profile over n, where the model has it free.
-    #[serde(default)]
-    pub profile_n: Vec<ProfilePoint>,
-    /// Its time in seconds.
-    pub seconds: f64,
-}
 
 /// The outcome of the check; the parameters are those of the last stage where the check is left out
 /// or finds nothing lower.

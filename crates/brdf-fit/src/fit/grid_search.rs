@@ -391,10 +391,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Measurements;
     use crate::model::Model;
     use crate::objective::weights::Weights;
     use crate::progress::{NoObserver, Phase};
+    use crate::scan::Measurements;
     use crate::scan::synthetic::scan;
 
     fn criterion_of(family: Family, k2: f64, kd: f64, k1: f64) -> Objective {

@@ -4,7 +4,7 @@ use brdf_core::{ModelParameters, Parameters};
 use serde::{Deserialize, Serialize};
 
 use super::energy::EnergyConstraint;
-use super::global_check::GlobalCheck;
+use super::grid_search::ProfilePoint;
 use super::options::FitOptions;
 use super::robust::RobustFit;
 use super::start::InitialValues;
@@ -92,6 +92,22 @@ pub struct Stage {
     /// The reason of the termination.
     #[serde(rename = "ending")]
     pub termination: Termination,
+}
+
+/// The result of the check against the global optimum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GlobalCheck {
+    /// Whether the last stage missed a lower minimum, which then replaced its result.
+    pub lower_minimum_taken: bool,
+    /// E of the last stage over the fitted readings, in percent.
+    pub stage2_e_percent: f64,
+    /// The profile over k1: the lowest E at each width; a single point if k1 is not free.
+    pub profile: Vec<ProfilePoint>,
+    /// The profile over n, if n is free; otherwise empty.
+    #[serde(default)]
+    pub profile_n: Vec<ProfilePoint>,
+    /// The time of the check in seconds.
+    pub seconds: f64,
 }
 
 impl Fit {

@@ -238,7 +238,8 @@ fn median_scale(objective: &Objective, residuals: &[(f64, f64)], free: usize) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FitOptions, Measurements, RefractiveIndex, fit};
+    use crate::fit::{FitOptions, fit};
+    use crate::scan::{Measurements, RefractiveIndex};
     use brdf_core::Parameters;
 
     #[test]

@@ -57,7 +57,7 @@ pub struct Assessment {
 /// # Examples
 ///
 /// ```no_run
-/// use brdf_fit::inference::assess;
+/// use brdf_fit::assess;
 /// use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
 ///
 /// let options = FitOptions {

@@ -461,7 +461,7 @@ impl Scale {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::FitOptions;
+    use crate::fit::FitOptions;
     use crate::fit::fit_scan;
     use crate::inference::test_scans::{options, rippled};
     use crate::model::Model;

@@ -2,8 +2,9 @@
 
 use brdf_core::Parameters;
 
+use crate::fit::FitOptions;
 use crate::scan::synthetic::scan;
-use crate::{FitOptions, Measurements, RefractiveIndex};
+use crate::scan::{Measurements, RefractiveIndex};
 
 /// A scan of the paper's model with k2, kD and k1, each reading changed by up to the fraction
 /// `ripple`, which no parameter follows.

@@ -129,7 +129,7 @@ impl Uncertainty {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::FitOptions;
+    use crate::fit::FitOptions;
     use crate::fit::fit_scan;
     use crate::inference::Interval;
     use crate::inference::test_scans::{options, rippled};

@@ -173,9 +173,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::Measurement;
     use crate::objective::ObjectiveError;
     use crate::objective::weights::Weights;
+    use crate::scan::Measurement;
     use crate::scan::Measurements;
     use crate::scan::synthetic::scan;
 

@@ -10,7 +10,7 @@ mod error;
 mod evaluation;
 mod rows;
 mod subset;
-pub mod weights;
+pub(crate) mod weights;
 
 pub use error::ObjectiveError;
 pub use evaluation::NormalEquations;

@@ -194,7 +194,7 @@ mod tests {
     use super::*;
     use crate::report::run::Depth;
     use crate::scan::synthetic::scan;
-    use crate::{Measurements, RefractiveIndex};
+    use crate::scan::{Measurements, RefractiveIndex};
 
     fn report(file: &str, wavelength_um: Option<f64>, max_iterations: u64) -> Report {
         let options = FitOptions {

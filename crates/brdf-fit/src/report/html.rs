@@ -175,9 +175,10 @@ fn physics(assessment: &Assessment) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::FitOptions;
     use crate::report::run::Depth;
+    use crate::scan::RefractiveIndex;
     use crate::scan::synthetic::scan;
-    use crate::{FitOptions, RefractiveIndex};
 
     #[test]
     fn text_from_a_file_is_escaped() {

@@ -16,7 +16,7 @@ use crate::solver::Termination;
 /// ```
 /// use brdf_core::Parameters;
 /// use brdf_fit::report::{Depth, Report};
-/// use brdf_fit::scan::synthetic::scan;
+/// use brdf_fit::synthetic::scan;
 /// use brdf_fit::{FitOptions, RefractiveIndex};
 ///
 /// let measurements = scan(Parameters::new(0.3, 0.1, 0.2)?, 1.5);

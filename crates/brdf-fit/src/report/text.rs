@@ -383,9 +383,10 @@ fn physics_lines(physics: &Physics, fit: &Fit) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fit::FitOptions;
     use crate::report::run::Depth;
+    use crate::scan::RefractiveIndex;
     use crate::scan::synthetic::scan;
-    use crate::{FitOptions, RefractiveIndex};
 
     #[test]
     fn the_sections_are_the_text_below_its_heading() {

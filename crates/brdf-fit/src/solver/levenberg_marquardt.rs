@@ -13,7 +13,7 @@ use super::Termination;
 use crate::objective::NormalEquations;
 
 /// A sum of squares with its normal equations.
-pub trait LeastSquares<const P: usize> {
+pub(crate) trait LeastSquares<const P: usize> {
     /// E, J^T r and J^T J at the given parameters.
     fn normal_equations(&self, param: &SVector<f64, P>) -> NormalEquations<P>;
 }
@@ -36,7 +36,7 @@ const ACCEPTED_GAIN: f64 = 1e-4;
 
 /// An argmin [`Solver`] for a [`LeastSquares`] problem, with one trial step in each iteration.
 #[derive(Debug, Clone)]
-pub struct LevenbergMarquardt<const P: usize> {
+pub(crate) struct LevenbergMarquardt<const P: usize> {
     lower: SVector<f64, P>,
     upper: SVector<f64, P>,
     damping: f64,
@@ -51,7 +51,7 @@ type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
 
 impl<const P: usize> LevenbergMarquardt<P> {
     /// A solver that keeps each parameter within [lower, upper]. Bounds may be infinite.
-    pub fn new(lower: SVector<f64, P>, upper: SVector<f64, P>) -> Self {
+    pub(crate) fn new(lower: SVector<f64, P>, upper: SVector<f64, P>) -> Self {
         Self {
             lower,
             upper,
@@ -64,7 +64,7 @@ impl<const P: usize> LevenbergMarquardt<P> {
     }
 
     /// The reason of the termination; `None` while the solver runs and at the iteration limit.
-    pub fn termination(&self) -> Option<Termination> {
+    pub(crate) fn termination(&self) -> Option<Termination> {
         self.termination
     }
 

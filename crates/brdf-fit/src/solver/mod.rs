@@ -1,8 +1,8 @@
 //! The two minimisers, as argmin solvers that keep the parameters within their bounds.
 
 mod error;
-pub mod levenberg_marquardt;
-pub mod nelder_mead;
+pub(crate) mod levenberg_marquardt;
+pub(crate) mod nelder_mead;
 pub(crate) mod observed;
 
 pub use error::SolverError;
@@ -97,7 +97,7 @@ impl fmt::Display for Termination {
 
 /// The result of a minimisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Minimum {
+pub(crate) struct Minimum {
     /// The parameters at the minimum.
     pub parameters: ModelParameters,
     /// E at the minimum, as a fraction.
@@ -117,7 +117,7 @@ pub struct Minimum {
 /// # Errors
 ///
 /// The minimiser fails, or the observer cancels.
-pub fn minimise(
+pub(crate) fn minimise(
     objective: &Objective,
     method: Method,
     start: ModelParameters,
@@ -192,7 +192,7 @@ struct Run<'a> {
 
 /// E as a function of the free parameters.
 #[derive(Debug, Clone, Copy)]
-pub struct Problem<'a, const P: usize> {
+pub(crate) struct Problem<'a, const P: usize> {
     objective: &'a Objective,
     start: ModelParameters,
     free: [Parameter; P],
@@ -200,7 +200,11 @@ pub struct Problem<'a, const P: usize> {
 
 impl<'a, const P: usize> Problem<'a, P> {
     /// E over the free parameters; the other parameters are those of the start.
-    pub fn new(objective: &'a Objective, start: ModelParameters, free: [Parameter; P]) -> Self {
+    pub(crate) fn new(
+        objective: &'a Objective,
+        start: ModelParameters,
+        free: [Parameter; P],
+    ) -> Self {
         Self {
             objective,
             start,

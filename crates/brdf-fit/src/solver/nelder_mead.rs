@@ -28,16 +28,16 @@ const RESTART_GAIN: f64 = 1e-9;
 
 /// E over coordinates without bounds: k2 = x^2, kD = x^2, k1 = exp(x), n = 1 + x^2, p = exp(x).
 #[derive(Debug, Clone, Copy)]
-pub struct Unbounded<'a, const P: usize>(Free<'a, P>);
+pub(crate) struct Unbounded<'a, const P: usize>(Free<'a, P>);
 
 impl<'a, const P: usize> Unbounded<'a, P> {
     /// E of the problem; infinite if a parameter is above its range, or k1 or p below it.
-    pub fn new(problem: Free<'a, P>) -> Self {
+    pub(crate) fn new(problem: Free<'a, P>) -> Self {
         Self(problem)
     }
 
     /// The coordinates of parameters, each clamped to its range.
-    pub fn to_coordinates(&self, at: &ModelParameters) -> SVector<f64, P> {
+    pub(crate) fn to_coordinates(&self, at: &ModelParameters) -> SVector<f64, P> {
         self.0.vector(|parameter| {
             let (lowest, highest) = parameter.range();
             let value = parameter.of(at).clamp(lowest, highest);
@@ -50,7 +50,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
     }
 
     /// The parameters of coordinates, each clamped to its range.
-    pub fn to_parameters(&self, x: &SVector<f64, P>) -> ModelParameters {
+    pub(crate) fn to_parameters(&self, x: &SVector<f64, P>) -> ModelParameters {
         let mut values = *x;
         for (value, parameter) in values.iter_mut().zip(self.0.free) {
             let (lowest, highest) = parameter.range();
@@ -61,7 +61,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
 
     /// The edges of the first simplex. A weight that starts at zero gets the step of a Lambertian
     /// surface, so that it can leave its bound.
-    pub fn steps(&self) -> SVector<f64, P> {
+    pub(crate) fn steps(&self) -> SVector<f64, P> {
         let weight = self.0.objective.lambertian_weight().abs().max(1e-12);
         self.0.vector(|parameter| match parameter {
             Parameter::K2 | Parameter::Kd => 0.5 * weight.sqrt(),
@@ -105,7 +105,7 @@ impl<const P: usize> CostFunction for Unbounded<'_, P> {
 
 /// The simplex of argmin, restarted until a new simplex makes no progress.
 #[derive(Clone)]
-pub struct NelderMead<const P: usize> {
+pub(crate) struct NelderMead<const P: usize> {
     simplex: Simplex<SVector<f64, P>, f64>,
     start: SVector<f64, P>,
     steps: SVector<f64, P>,
@@ -118,7 +118,7 @@ type State<const P: usize> = IterState<SVector<f64, P>, (), (), (), (), f64>;
 
 impl<const P: usize> NelderMead<P> {
     /// A solver whose first simplex has the given edges along the coordinates.
-    pub fn new(start: SVector<f64, P>, steps: SVector<f64, P>) -> Self {
+    pub(crate) fn new(start: SVector<f64, P>, steps: SVector<f64, P>) -> Self {
         Self {
             simplex: simplex(start, steps),
             start,
@@ -129,7 +129,7 @@ impl<const P: usize> NelderMead<P> {
     }
 
     /// The reason of the termination; `None` while the solver runs and at the iteration limit.
-    pub fn termination(&self) -> Option<Termination> {
+    pub(crate) fn termination(&self) -> Option<Termination> {
         self.termination
     }
 

@@ -1,7 +1,7 @@
 //! The fit: buttons, progress and settings.
 
+use brdf_fit::Loss;
 use brdf_fit::Method;
-use brdf_fit::fit::robust::Loss;
 use egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, ProgressBar, Ui};
 
 use crate::intent::{Command, Intent};

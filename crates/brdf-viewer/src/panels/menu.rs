@@ -1,6 +1,6 @@
 //! The menu bar, with the key of each command.
 
-use brdf_fit::scan::{Convention, Side};
+use brdf_fit::{Convention, Side};
 use egui::{Button, MenuBar, Panel, Ui};
 
 use crate::intent::{Command, Intent};

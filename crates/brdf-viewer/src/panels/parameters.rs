@@ -3,7 +3,7 @@
 
 use brdf_core::N_DOMAIN;
 use brdf_fit::format::digits;
-use brdf_fit::model::{Model, Parameter};
+use brdf_fit::{Model, Parameter};
 use egui::{
     ComboBox, DragValue, Grid, Id, Panel, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
 };

@@ -1,7 +1,7 @@
 //! The panel at the bottom: the tables that the command line prints, and plots of the fit.
 
-use brdf_fit::fit::grid_search::ProfilePoint;
-use brdf_fit::progress::Phase;
+use brdf_fit::Phase;
+use brdf_fit::ProfilePoint;
 use egui::{Color32, Panel, Rangef, RichText, Role, ScrollArea, Ui};
 use egui_plot::{AxisHints, HLine, Legend, Line, Plot, PlotPoints, Points, VLine};
 

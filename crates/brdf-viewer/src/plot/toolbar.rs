@@ -1,8 +1,8 @@
 //! The toolbar above the plot: layout, axes, plane, and readings that are not shown.
 
+use brdf_fit::Side;
 use brdf_fit::format::counted;
 use brdf_fit::plot::{Layout, Scale};
-use brdf_fit::scan::Side;
 use egui::{Checkbox, ComboBox, Ui};
 
 use crate::intent::{Command, Intent};

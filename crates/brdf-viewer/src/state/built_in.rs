@@ -1,9 +1,9 @@
 //! The built-in samples: measured ones of the project, and Table 1 of the paper.
 
 use brdf_core::published::PUBLISHED;
+use brdf_fit::Convention;
 use brdf_fit::Measurements;
 use brdf_fit::read::ReadError;
-use brdf_fit::scan::Convention;
 
 use super::sample::{Opened, Scan, published_name};
 

@@ -1,6 +1,6 @@
 //! The course of E during a fit.
 
-use brdf_fit::progress::Phase;
+use brdf_fit::Phase;
 
 /// E after one iteration of a stage.
 #[derive(Debug, Clone, Copy, PartialEq)]

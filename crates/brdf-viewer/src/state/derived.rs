@@ -7,13 +7,13 @@
 use std::collections::HashMap;
 
 use brdf_core::{Family, Geometry, ModelParameters, check_refractive_index};
-use brdf_fit::fit::FitProblem;
-use brdf_fit::inference::Uncertainty;
-use brdf_fit::model::DEFAULT_N;
-use brdf_fit::objective::weights::Weights;
-use brdf_fit::objective::{IncidenceError, Objective};
+use brdf_fit::DEFAULT_N;
+use brdf_fit::FitProblem;
+use brdf_fit::Uncertainty;
+use brdf_fit::Weights;
 use brdf_fit::plot::{Curve, Layout, Quantity, Scale, Selection, View, curves};
 use brdf_fit::{FitError, FitOptions, RefractiveIndex};
+use brdf_fit::{IncidenceError, Objective};
 
 use super::fit_settings::{FitSettings, ReadingWeights};
 use super::id::{SampleId, ScanId};

@@ -1,6 +1,6 @@
 //! Editing: the active sample, its parameters, and undo and redo.
 
-use brdf_fit::model::{Model, Parameter};
+use brdf_fit::{Model, Parameter};
 
 use super::State;
 use super::fit_settings::Scope;

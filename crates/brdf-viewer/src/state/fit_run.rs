@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use brdf_fit::progress::{Phase, Step};
+use brdf_fit::{Phase, Step};
 
 use super::convergence::ConvergencePoint;
 use super::id::{SampleId, ScanId};

@@ -1,7 +1,7 @@
 //! The settings of the next fit.
 
-use brdf_fit::fit::robust::Loss;
-use brdf_fit::objective::weights::Weights;
+use brdf_fit::Loss;
+use brdf_fit::Weights;
 use brdf_fit::report::Depth;
 use brdf_fit::{FitOptions, Method, RefractiveIndex};
 use serde::{Deserialize, Serialize};
@@ -92,7 +92,7 @@ impl Default for FitSettings {
             weights: ReadingWeights::None,
             loss: None,
             constrain_energy: false,
-            energy_limit_deg: brdf_fit::fit::energy::DEFAULT_LIMIT_DEG,
+            energy_limit_deg: brdf_fit::ENERGY_LIMIT_DEG,
             start: Start::Paper,
             compare_models: false,
         }

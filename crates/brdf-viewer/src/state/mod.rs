@@ -26,8 +26,8 @@ pub mod saved;
 
 use std::path::PathBuf;
 
+use brdf_fit::Convention;
 use brdf_fit::plot::View;
-use brdf_fit::scan::Convention;
 
 use crate::job::{FileJob, Job};
 use crate::output_kind::OutputKind;

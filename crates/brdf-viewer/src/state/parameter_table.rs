@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use brdf_fit::Estimate;
 use brdf_fit::format::digits;
-use brdf_fit::inference::Estimate;
 
 use super::sample::Scan;
 use super::{Effect, State};

@@ -1,7 +1,7 @@
 //! The model and its parameters as the user edits them.
 
 use brdf_core::{AnyBrdf, ModelParameters};
-use brdf_fit::model::{FixedParameters, Model, Parameter};
+use brdf_fit::{FixedParameters, Model, Parameter};
 
 /// The state of the parameter controls: the model, the parameter values, and the parameters that
 /// are fixed in a fit.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use brdf_core::ModelParameters;
 use brdf_core::published::PublishedSample;
-use brdf_fit::fit::FitProblem;
-use brdf_fit::model::Model;
+use brdf_fit::FitProblem;
+use brdf_fit::Model;
 use brdf_fit::output::resolved;
 use brdf_fit::report::Report;
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
@@ -302,7 +302,7 @@ fn initial_parameters(measurements: &Measurements) -> EditedParameters {
         refractive_index: measurements
             .refractive_index
             .is_none()
-            .then_some(RefractiveIndex::Same(brdf_fit::model::DEFAULT_N)),
+            .then_some(RefractiveIndex::Same(brdf_fit::DEFAULT_N)),
         ..FitOptions::default()
     };
     let values = FitProblem::new(measurements, &options).map(|problem| problem.start());
@@ -310,7 +310,7 @@ fn initial_parameters(measurements: &Measurements) -> EditedParameters {
         k2: 0.0,
         kd: 0.1,
         k1: 0.3,
-        n: brdf_fit::model::DEFAULT_N,
+        n: brdf_fit::DEFAULT_N,
         p: 1.0,
     });
     EditedParameters::new(Model::Three, values)

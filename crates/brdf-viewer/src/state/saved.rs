@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use brdf_fit::Convention;
 use brdf_fit::output::{WriteError, write_file};
 use brdf_fit::plot::View;
-use brdf_fit::scan::Convention;
 use serde::{Deserialize, Serialize};
 
 use super::fit_settings::FitSettings;

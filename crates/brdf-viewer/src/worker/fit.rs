@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 
-use brdf_fit::progress::{Observer, Step};
 use brdf_fit::report::{Depth, ModelChoice, Report};
+use brdf_fit::{Observer, Step};
 
 use super::events::EventSender;
 use super::panics::catch_panics;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use brdf_fit::Measurements;
 use brdf_fit::read::{LazyScan, ReadError, ReadOptions};
 use brdf_fit::report::{Document, DocumentError, Report};
-use brdf_fit::scan::{Convention, Side};
+use brdf_fit::{Convention, Side};
 
 use crate::state::built_in;
 use crate::state::sample::{Opened, Scan};

@@ -5,8 +5,8 @@ use crate::common::{
     painted_areas, painted_curve, painted_lines, painted_marks, painted_segments, painted_texts,
     settle, shows, transform_of, window_with, with_z307,
 };
+use brdf_fit::Side;
 use brdf_fit::plot::{Ground, Layout, Quantity, Scale};
-use brdf_fit::scan::Side;
 use brdf_viewer::state::saved::Settings;
 use brdf_viewer::theme;
 use egui::accesskit::{Role, Toggled};

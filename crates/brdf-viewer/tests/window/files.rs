@@ -8,7 +8,7 @@ use crate::common::{
     open_built_in, open_path, settle, shows, type_number, window_with, with_z307, z307,
 };
 use brdf_fit::report::Document;
-use brdf_fit::scan::{Convention, Side};
+use brdf_fit::{Convention, Side};
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::Intent;
 use brdf_viewer::job::Event;
@@ -349,7 +349,7 @@ fn scans_of_other_formats_and_their_fits_are_opened() {
         // The format defines azimuth 0 as forward, independently of the menu.
         let theta = measurements.readings()[0].in_plane_theta().unwrap();
         assert!((theta + 30_f64.to_radians()).abs() < 1e-12);
-        assert_eq!(measurements.format, brdf_fit::scan::Format::Astm);
+        assert_eq!(measurements.format, brdf_fit::Format::Astm);
     };
     let mut window = empty();
     open_path(&mut window, &scan);

@@ -6,8 +6,8 @@ use crate::common::{
     Window, click, click_role, drop_file, empty, open_built_in, painted_lines, settle, shows,
     type_number, with_z307, z307,
 };
+use brdf_fit::Phase;
 use brdf_fit::plot::Ground;
-use brdf_fit::progress::Phase;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex};
 use brdf_viewer::intent::{Command, Intent};
@@ -416,7 +416,7 @@ fn a_model_set_for_all_scans_is_fitted_to_all_of_them() {
         window.state_mut().state.apply(intent);
         settle(window);
     };
-    let model = brdf_fit::model::Model::PowerN;
+    let model = brdf_fit::Model::PowerN;
     apply(&mut window, Intent::Model(model, Scope::All));
     apply(&mut window, Intent::Fit(Stages::Both, Scope::All));
     let mut scans = 0;

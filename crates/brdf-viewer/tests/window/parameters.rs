@@ -5,7 +5,7 @@ use crate::common::{
     with_z307,
 };
 use brdf_core::Geometry;
-use brdf_fit::model::{Model, Parameter};
+use brdf_fit::{Model, Parameter};
 use brdf_viewer::state::parameters::EditedParameters;
 use egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};

@@ -89,7 +89,10 @@ impl Arguments {
         }
         let page = self.plot.as_ref().map(|folder| folder.join(PAGE));
         let page = page.as_ref().map(|page| ("--plot", page.as_path()));
-        stream::check(inputs.chain(again), self.data_files().chain(page))
+        Ok(stream::check(
+            inputs.chain(again),
+            self.data_files().chain(page),
+        )?)
     }
 
     /// The files of `--json` and `--curves`.

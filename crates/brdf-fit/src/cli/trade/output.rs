@@ -18,7 +18,7 @@ impl Outputs {
     /// Checks that no output replaces the input or another output, and that each standard stream is
     /// used once.
     pub(super) fn check(&self, input: Option<Named<'_>>) -> Result<(), Vec<Failure>> {
-        stream::check(input, self.files()).map_err(|failure| vec![failure])
+        stream::check(input, self.files()).map_err(|error| vec![error.into()])
     }
 
     fn files(&self) -> impl Iterator<Item = Named<'_>> {

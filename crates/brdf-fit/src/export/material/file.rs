@@ -131,9 +131,10 @@ mod tests {
 
     use super::*;
     use crate::export::test_fits::material;
+    use crate::fit::FitOptions;
     use crate::report::Depth;
     use crate::scan::synthetic::scan;
-    use crate::{FitOptions, Measurements, RefractiveIndex};
+    use crate::scan::{Measurements, RefractiveIndex};
 
     /// A folder with one file.
     struct Folder(TempDir);

@@ -84,7 +84,7 @@ mod tests {
     use crate::plot::write::write_figures;
     use crate::scan::Measurement;
     use crate::scan::synthetic::scan;
-    use crate::{Measurements, RefractiveIndex};
+    use crate::scan::{Measurements, RefractiveIndex};
 
     fn lacquer() -> Measurements {
         scan(Parameters::new(0.3, 0.1, 0.2).unwrap(), 1.5)

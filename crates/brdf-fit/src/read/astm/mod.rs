@@ -91,7 +91,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
-    use crate::Measurement;
+    use crate::scan::Measurement;
     use crate::scan::Side;
 
     fn read_with(content: &str, options: &ReadOptions) -> Result<Measurements, ReadError> {

@@ -6,7 +6,7 @@ use super::error::TradeoffError;
 use super::result::{Alternative, FitTradeoff, Measured, OfParameter, Outcome, Reference};
 use super::timing::{self, median};
 use super::trials::{Trial, reference_options, trials};
-use crate::FitOptions;
+use crate::fit::FitOptions;
 use crate::fit::{FitError, FitProblem, Solution, fit_scan};
 use crate::inference::{Estimate, Uncertainty};
 use crate::model::Parameter;
@@ -174,8 +174,8 @@ mod tests {
     use crate::fit::robust::Loss;
     use crate::model::Model;
     use crate::scan::synthetic::scan;
+    use crate::scan::{Measurement, RefractiveIndex};
     use crate::tradeoff::fitting::TrialError;
-    use crate::{Measurement, RefractiveIndex};
 
     fn options() -> FitOptions {
         FitOptions {

@@ -2,7 +2,7 @@
 
 use serde::{Serialize, Serializer};
 
-use crate::FitError;
+use crate::fit::FitError;
 use crate::format::counted;
 use crate::model::Parameter;
 use crate::objective::ObjectiveError;

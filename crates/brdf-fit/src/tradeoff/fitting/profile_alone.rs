@@ -12,12 +12,12 @@ use brdf_core::ModelParameters;
 use super::error::TrialError;
 use crate::fit::FitProblem;
 use crate::fit::grid_search::{Profile, ProfilePoint, best_weights};
+use crate::fit::{FitError, FitOptions};
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::Objective;
 use crate::progress::{NoObserver, Phase, Progress};
 use crate::scan::{Measurements, RefractiveIndex};
 use crate::solver::SolverError;
-use crate::{FitError, FitOptions};
 
 /// Tolerance of ln k1 in Brent's method; the relative error of E is about its square.
 const WIDTH_TOLERANCE: f64 = 1e-8;

@@ -10,11 +10,12 @@ use super::profile_alone::{Depth, fit_by_profile};
 use super::reduced::{
     every_reading, every_second_incidence, without_largest, without_largest_name,
 };
+use crate::fit::FitOptions;
 use crate::fit::{Fit, Stage, fit};
 use crate::format::counted;
 use crate::scan::Measurements;
 use crate::solver::{Method, Termination};
-use crate::{FitOptions, Method::LevenbergMarquardt as Lm, Method::NelderMead as Nm};
+use crate::solver::{Method::LevenbergMarquardt as Lm, Method::NelderMead as Nm};
 
 /// Of each incidence every `step`-th reading, and the name of that.
 const STEPS: [(usize, &str); 3] = [

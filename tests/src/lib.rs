@@ -192,3 +192,8 @@ pub fn one_wavelength(path: &Path, wavelength_um: f64) -> Measurements {
         .find(|scan| scan.wavelengths() == [Some(wavelength_um)])
         .expect("the wavelength is in the file")
 }
+
+/// The examples of the README, compiled as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

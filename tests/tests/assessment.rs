@@ -184,7 +184,7 @@ fn masks_and_solid_angles_weigh_the_readings() {
     assert!(text.contains(
         "readings weighted by solid angle, 0 within 12 deg of the source, 0 within 2 deg of the mirror direction"
     ));
-    assert!(text.contains("with a weight of zero, without any say"));
+    assert!(text.contains("with a weight of zero, without influence on the fit"));
 }
 
 #[test]

@@ -213,7 +213,7 @@ fn an_error_in_the_options_is_printed_once() {
 }
 
 #[test]
-fn usage_that_is_none() {
+fn incorrect_usage_is_an_error() {
     let (_folder, path) = file(rows("30,-20,0.4"));
     for (arguments, message) in [
         (vec!["--stage1", "simplex"], "invalid value 'simplex'"),
@@ -232,7 +232,7 @@ fn usage_that_is_none() {
             vec!["--stage2", "none", "--stage1-limit", "5"],
             "stage 1 alone cannot be fitted: 0 readings up to 5 deg",
         ),
-        (vec!["--fix", "k3=1"], "\"k3\" is no parameter"),
+        (vec!["--fix", "k3=1"], "\"k3\" is not a parameter"),
         (vec!["--fix", "k1"], "expected NAME=VALUE"),
         (vec!["--fix", "k1=2000"], "k1 = 2000 cannot be fixed"),
         (

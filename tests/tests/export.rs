@@ -189,7 +189,8 @@ fn a_file_without_fits_is_reported_with_its_path() {
     for (content, expected) in [
         (
             "psi_deg",
-            ", line 1, column 1: expected value: expected JSON with a document of fits",
+            ", line 1, column 1: expected value: expected JSON with a document of fits (brdf fit \
+             writes it with --json)",
         ),
         (
             "{\"format_version\": 7, \"fits\": [{}]}",

@@ -99,7 +99,7 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
         assert_parameters(&document, &[(Some(0.62), SAND_YELLOW)]);
         assert_eq!(document.reports[0].format, format);
         for said in said.iter().filter(|said| !said.is_empty()) {
-            assert!(printed.contains(&format!("  input: {said}\n")), "{printed}");
+            assert!(printed.contains(&format!("  read: {said}\n")), "{printed}");
             assert!(document.reports[0].conversions.iter().any(|c| c == said));
         }
     }
@@ -113,7 +113,7 @@ fn each_wavelength_of_a_file_is_fitted() {
         (Some(0.852_23), [0.1, 0.05, 0.4]),
     ];
     assert_parameters(&document, &expected);
-    assert!(printed.contains("  input: reflectance factors are divided by pi\n"));
+    assert!(printed.contains("  read: reflectance factors are divided by pi\n"));
     let (_, document) = fitted(&file("cornell.astm"), &[]);
     let kd = |i: u32| 0.1 + 0.01 * f64::from(i);
     let expected: Vec<_> = (0..31)
@@ -380,7 +380,7 @@ fn a_tolerance_that_no_table_keeps_is_an_error_that_says_which_one_does() {
     let complaint = text(&output.stderr);
     assert!(
         complaint
-            .contains("a table within 1e-3 has more than 4000000 entries: expected --tolerance"),
+            .contains("a table within the tolerance 1e-3 has more than 4000000 entries: expected a tolerance of"),
         "{complaint}"
     );
 }

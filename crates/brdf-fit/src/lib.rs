@@ -80,3 +80,8 @@ pub use scan::{
     RefractiveIndex, Side, synthetic,
 };
 pub use solver::{Method, SolverError, Termination};
+
+/// The example of the README, compiled as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;

@@ -31,14 +31,14 @@ fn fitted(model: Model, fixed: FixedParameters) -> Fit {
     fit(&rippled(0.1), &options(model, fixed)).unwrap()
 }
 
-fn holding(parameter: Parameter, value: f64) -> FixedParameters {
+fn fixing(parameter: Parameter, value: f64) -> FixedParameters {
     FixedParameters::none().with(parameter, value)
 }
 
 #[test]
-fn words_and_json_go_there_and_back() {
+fn text_and_json_are_read_back() {
     let fixed: FixedParameters = "K1=0.2, kd = 5e-2".parse().unwrap();
-    assert_eq!(fixed, holding(Parameter::Kd, 0.05).with(Parameter::K1, 0.2));
+    assert_eq!(fixed, fixing(Parameter::Kd, 0.05).with(Parameter::K1, 0.2));
     assert_eq!(fixed.to_string(), "kD = 0.05, k1 = 0.2");
     let json = serde_json::to_string(&fixed).unwrap();
     assert_eq!(json, r#"{"kd":0.05,"k1":0.2}"#);
@@ -47,7 +47,7 @@ fn words_and_json_go_there_and_back() {
         fixed
     );
     for (text, message) in [
-        ("k3=1", "is no parameter"),
+        ("k3=1", "is not a parameter"),
         ("k1", "expected NAME=VALUE"),
         ("k1=wide", "expected NAME=VALUE"),
         ("k1=1,k1=2", "given twice"),
@@ -63,7 +63,7 @@ fn options_without_held_parameters_are_written_as_before() {
     let json = serde_json::to_string(&plain).unwrap();
     assert!(!json.contains("held"));
     assert_eq!(serde_json::from_str::<FitOptions>(&json).unwrap(), plain);
-    let fixed = options(Model::PowerN, holding(Parameter::P, 0.5));
+    let fixed = options(Model::PowerN, fixing(Parameter::P, 0.5));
     let json = serde_json::to_string(&fixed).unwrap();
     assert!(json.contains(r#""held":{"p":0.5}"#));
     assert_eq!(serde_json::from_str::<FitOptions>(&json).unwrap(), fixed);
@@ -71,7 +71,7 @@ fn options_without_held_parameters_are_written_as_before() {
 }
 
 #[test]
-fn what_cannot_be_held_is_an_error_of_usage() {
+fn a_parameter_that_cannot_be_fixed_is_a_usage_error() {
     for (model, parameter, value, message) in [
         (
             Model::Three,
@@ -95,7 +95,7 @@ fn what_cannot_be_held_is_an_error_of_usage() {
             Model::Three,
             Parameter::K2,
             -0.1,
-            "expected a number from 0 on",
+            "expected a number of at least 0",
         ),
         (
             Model::Three,
@@ -110,7 +110,7 @@ fn what_cannot_be_held_is_an_error_of_usage() {
             "k1 = NaN cannot be fixed",
         ),
     ] {
-        let error = fit(&rippled(0.1), &options(model, holding(parameter, value))).unwrap_err();
+        let error = fit(&rippled(0.1), &options(model, fixing(parameter, value))).unwrap_err();
         assert!(
             error.is_usage() && error.to_string().contains(message),
             "{error}"
@@ -127,7 +127,7 @@ fn the_best_weights_at_a_held_width_are_those_of_the_closed_form() {
         (Method::NelderMead, 0.35),
         (Method::LevenbergMarquardt, 1e-3),
     ] {
-        let fixed = holding(Parameter::K1, k1);
+        let fixed = fixing(Parameter::K1, k1);
         let found = fit(
             &scan,
             &FitOptions {
@@ -155,7 +155,7 @@ fn one_weight_held_leaves_the_best_of_the_other() {
         (Parameter::K2, Parameter::Kd),
         (Parameter::Kd, Parameter::K2),
     ] {
-        let model = ReducedModel::new(Model::Three, holding(weight, 0.15));
+        let model = ReducedModel::new(Model::Three, fixing(weight, 0.15));
         let at = fitted(Model::Three, FixedParameters::none()).at();
         let best = best_weights(&objective, model, at);
         assert_eq!(weight.of(&best.parameters), 0.15);
@@ -170,7 +170,7 @@ fn one_weight_held_leaves_the_best_of_the_other() {
 
 #[test]
 fn the_search_with_a_held_weight_finds_what_a_hurried_stage_misses() {
-    let fixed = holding(Parameter::K2, 0.3);
+    let fixed = fixing(Parameter::K2, 0.3);
     let start = ModelParameters::three(Parameters::new(1.0, 1.0, 50.0).unwrap(), 1.5);
     let hurried = FitOptions {
         start: Some(start),
@@ -214,7 +214,7 @@ fn where_all_is_held_e_is_evaluated_and_nothing_is_uncertain() {
 
 #[test]
 fn every_part_of_a_report_keeps_what_is_held() {
-    let fixed = holding(Parameter::K1, 0.25).with(Parameter::N, 1.6);
+    let fixed = fixing(Parameter::K1, 0.25).with(Parameter::N, 1.6);
     let options = FitOptions {
         robust: Some(Loss::Huber),
         energy_limit: Some(1.4),
@@ -240,7 +240,7 @@ fn every_part_of_a_report_keeps_what_is_held() {
 
 #[test]
 fn a_chosen_model_holds_what_it_has() {
-    let options = options(Model::Three, holding(Parameter::K1, 0.3));
+    let options = options(Model::Three, fixing(Parameter::K1, 0.3));
     let (report, error) = Report::observed(
         &rippled(0.02),
         &options,
@@ -254,17 +254,17 @@ fn a_chosen_model_holds_what_it_has() {
 }
 
 #[test]
-fn held_weights_that_make_light_are_an_error_with_energy() {
+fn fixed_weights_that_violate_energy_conservation_are_an_error() {
     let bright = |fixed| FitOptions {
         energy_limit: Some(1.4),
         ..options(Model::Three, fixed)
     };
-    let error = fit(&rippled(0.1), &bright(holding(Parameter::Kd, 1.2))).unwrap_err();
+    let error = fit(&rippled(0.1), &bright(fixing(Parameter::Kd, 1.2))).unwrap_err();
     assert!(
-        error.is_usage() && error.to_string().contains("above 1"),
+        error.is_usage() && error.to_string().contains("exceeds 1"),
         "{error}"
     );
-    for fixed in [holding(Parameter::K2, 0.9), holding(Parameter::Kd, 0.9)] {
+    for fixed in [fixing(Parameter::K2, 0.9), fixing(Parameter::Kd, 0.9)] {
         let found = fit(&rippled(0.1), &bright(fixed)).unwrap();
         let brdf = brdf_core::AnyBrdf::new(Family::Paper, &found.at()).unwrap();
         let rho = brdf.hemispherical_reflectance(1.4, 1e-6).unwrap();
@@ -284,9 +284,9 @@ proptest! {
         let free = fitted(model, FixedParameters::none());
         let at = parameter.of(&free.at());
         let (lowest, highest) = parameter.range();
-        let other = fitted(model, holding(parameter, (factor * at).clamp(lowest, highest)));
+        let other = fitted(model, fixing(parameter, (factor * at).clamp(lowest, highest)));
         prop_assert!(other.e_percent >= free.e_percent * (1.0 - 1e-9));
-        let same = fitted(model, holding(parameter, at));
+        let same = fitted(model, fixing(parameter, at));
         prop_assert!((same.e_percent / free.e_percent - 1.0).abs() < 1e-9);
     }
 }

@@ -75,10 +75,9 @@ pub(super) fn selection(error: &SelectionError) -> String {
         SelectionError::NoColour { .. } => {
             "--rgb RED,GREEN,BLUE chooses the wavelengths, --wavelength UM one of them for grey"
         }
-        SelectionError::SeveralFiles { .. } | SelectionError::NoSuchFile { .. } => "--file",
-        SelectionError::SeveralWavelengths { .. } | SelectionError::NoSuchWavelength { .. } => {
-            "--wavelength"
-        }
+        SelectionError::SeveralFiles { .. } => "--file chooses one",
+        SelectionError::SeveralWavelengths { .. } => "--wavelength chooses one",
+        _ => return error.to_string(),
     };
     with_hint(error, hint)
 }

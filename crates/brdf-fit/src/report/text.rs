@@ -72,7 +72,7 @@ impl Report {
             let _ = writeln!(text, "  warning: {warning}");
         }
         for conversion in &self.conversions {
-            let _ = writeln!(text, "  input: {conversion}");
+            let _ = writeln!(text, "  read: {conversion}");
         }
         if !self.ignored_columns.is_empty() {
             let columns = self.ignored_columns.join(", ");

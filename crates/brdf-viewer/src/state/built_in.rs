@@ -11,7 +11,7 @@ macro_rules! measured {
     ($name:literal) => {
         (
             concat!("data/measured/", $name),
-            include_str!(concat!("../../../../data/measured/", $name)),
+            include_str!(concat!("../../samples/", $name)),
         )
     };
 }

@@ -137,7 +137,7 @@ fn pairs(brdf: &AnyBrdf, count: usize, random: &mut StdRng) -> Vec<[[f64; 3]; 2]
         let view = direction(zenith(random), random.random_range(0.0..6.0));
         found.push([source, view]);
         let unit = Vector3::from(source).normalize();
-        if let Some(sample) = sampler.sample(&unit, random.random()).unwrap() {
+        if let Some(sample) = sampler.sample(unit, random.random()).unwrap() {
             found.push([source, rounded(sample.direction)]);
         }
     }
@@ -146,7 +146,7 @@ fn pairs(brdf: &AnyBrdf, count: usize, random: &mut StdRng) -> Vec<[[f64; 3]; 2]
 
 fn geometry([source, view]: &[[f64; 3]; 2]) -> Geometry {
     let unit = |direction: &[f64; 3]| Vector3::from(*direction).normalize();
-    Geometry::from_directions(&unit(source), &unit(view)).unwrap()
+    Geometry::from_directions(unit(source), unit(view)).unwrap()
 }
 
 /// The largest error of Mitsuba's results, as a multiple of the tolerance: at most 1 in a passing test.
@@ -169,7 +169,7 @@ fn excess(found: &Value, channels: &[AnyBrdf; 3], pairs: &[[[f64; 3]; 2]]) -> f6
     let samplers = channels.map(|brdf| Sampler::new(&brdf));
     let density = |[source, view]: &[[f64; 3]; 2]| {
         let [source, view] = [source, view].map(|d| Vector3::from(*d).normalize());
-        let of_each = samplers.iter().map(|s| s.pdf(&source, &view).unwrap());
+        let of_each = samplers.iter().map(|s| s.pdf(source, view).unwrap());
         of_each.sum::<f64>() / 3.0
     };
     let expected: Vec<_> = pairs.iter().map(density).collect();

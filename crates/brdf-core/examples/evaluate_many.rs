@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let psi = vec![0.5; COUNT];
     let theta = sequence(0.618_034, 1.2);
-    let phi = sequence(0.754_878, 6.28);
+    let phi = sequence(0.754_878, std::f64::consts::TAU);
     let mut values = vec![0.0; COUNT];
     let start = Instant::now();
     let points = Points::Angles {

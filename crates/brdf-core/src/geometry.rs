@@ -336,9 +336,9 @@ mod tests {
     #[test]
     fn arrays_and_vectors_give_the_same_geometry() {
         let (source, view) = (direction(0.4, 0.3), direction(1.1, 2.0));
-        let by_arrays = Geometry::from_directions(source, &view).unwrap();
+        let by_arrays = Geometry::from_directions(source, view).unwrap();
         let [source, view] = [source, view].map(nalgebra::Vector3::from);
-        assert_eq!(Geometry::from_directions(&source, view), Ok(by_arrays));
+        assert_eq!(Geometry::from_directions(source, view), Ok(by_arrays));
     }
 
     proptest! {

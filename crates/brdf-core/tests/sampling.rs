@@ -286,7 +286,7 @@ impl HalfBins {
             if view.z <= 0.0 {
                 return 0.0;
             }
-            4.0 * cos_gamma * sampler.pdf(source, &view.normalize()).unwrap()
+            4.0 * cos_gamma * sampler.pdf(source, view.normalize()).unwrap()
         };
         if horizon <= from {
             return 0.0;
@@ -321,7 +321,7 @@ impl ViewBins {
             let ring = |cos_theta: f64| {
                 let density = |azimuth| {
                     let view = direction(cos_theta.acos(), SOURCE_AZIMUTH + azimuth);
-                    sampler.pdf(source, &view).unwrap()
+                    sampler.pdf(source, view).unwrap()
                 };
                 integral(&density, azimuths, QUADRATURE_TOLERANCE)
             };
@@ -483,7 +483,7 @@ fn variances(brdf: &AnyBrdf, psi: f64, seed: u64) -> [f64; 2] {
     let source = direction(psi, SOURCE_AZIMUTH);
     let by_cosine = draws(&cosine, &source, seed).into_iter().map(|draw| {
         let view = draw.unwrap().direction;
-        let geometry = brdf_core::Geometry::from_directions(&source, &view).unwrap();
+        let geometry = brdf_core::Geometry::from_directions(source, view).unwrap();
         PI * brdf.value(&geometry)
     });
     let ours = draws(&Sampler::new(brdf), &source, seed);

@@ -150,7 +150,7 @@ impl Errors {
         let [psi, theta, phi] = point.angles;
         let angles = Geometry::new(psi, theta, phi).expect("angles");
         let (source, view) = (point.source.into(), point.view.into());
-        let directions = Geometry::from_directions(&source, &view).expect("directions");
+        let directions = Geometry::from_directions(source, view).expect("directions");
         let [drawn, of_drawn] = drawn_errors(brdf, sampler, point, found);
         Self {
             of_angles: relative(found.of_angles, brdf.value(&angles)),
@@ -167,7 +167,7 @@ impl Errors {
 fn drawn_errors(brdf: &AnyBrdf, sampler: &Sampler, point: &Point, found: &Found) -> [f64; 2] {
     let source: Vector3<f64> = point.source.into();
     let drawn: Vector3<f64> = found.drawn.into();
-    let Some(sample) = sampler.sample(&source, point.numbers).expect("a source") else {
+    let Some(sample) = sampler.sample(source, point.numbers).expect("a source") else {
         let is_below = drawn.z <= 0.0 && (found.density, found.weight) == (0.0, 0.0);
         assert!(is_below || drawn.z.abs() < 1e-6, "{point:?} {found:?}");
         return [0.0; 2];
@@ -176,7 +176,7 @@ fn drawn_errors(brdf: &AnyBrdf, sampler: &Sampler, point: &Point, found: &Found)
     if drawn.z < LARGEST_DEG.to_radians().cos() {
         return [distance, 0.0];
     }
-    let geometry = Geometry::from_directions(&source, &drawn).expect("directions");
+    let geometry = Geometry::from_directions(source, drawn).expect("directions");
     let intensity = brdf.value(&geometry) * geometry.cos_theta();
     let weight = relative(found.weight, intensity / found.density);
     let density = density_error(found.density, sampler, &source, &drawn);

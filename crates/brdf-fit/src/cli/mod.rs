@@ -1,7 +1,7 @@
 //! The command line: the programs `brdf` and `fit`, of which each is one call into this module.
 //!
 //! This layer alone knows options, exit statuses and the terminal. The library below names neither
-//! an option nor a file that it was not given; [`explain`] adds the options to its messages.
+//! an option nor a file that it was not given; `explain` adds the options to its messages.
 
 mod completions;
 mod energy;

@@ -74,9 +74,12 @@ impl<'a> FitProblem<'a> {
     ///
     /// # Errors
     ///
-    /// The scan has several wavelengths or no reading; no refractive index is known; an option is
-    /// outside its domain; or E is not defined for these readings and weights.
+    /// No stage is requested; the scan has several wavelengths or no reading; no refractive index is
+    /// known; an option is outside its domain; or E is not defined for these readings and weights.
     pub fn new(measurements: &'a Measurements, options: &'a FitOptions) -> Result<Self, FitError> {
+        if options.stage1.or(options.stage2).is_none() {
+            return Err(FitError::NoStage);
+        }
         if let Some(limit) = options.energy_limit {
             check_energy_limit(limit)?;
         }
@@ -156,8 +159,8 @@ impl<'a> FitProblem<'a> {
     ///
     /// # Errors
     ///
-    /// No stage is asked for, too few readings influence the fit, all readings have one value, the
-    /// constraints contradict each other, a minimiser fails, or the observer cancels.
+    /// Too few readings influence the fit, all readings have one value, the constraints contradict
+    /// each other, a minimiser fails, or the observer cancels.
     pub fn solve(&self, observer: &dyn Observer) -> Result<Fit, FitError> {
         self.run(observer).map(|run| run.fit)
     }
@@ -244,9 +247,6 @@ impl<'a> FitProblem<'a> {
 
     /// Checks that the readings suffice for the stages that the options ask for.
     fn check_solvable(&self) -> Result<(), FitError> {
-        if self.options.stage1.or(self.options.stage2).is_none() {
-            return Err(FitError::NoStage);
-        }
         self.check_readings()?;
         if let (None, Some(reason)) = (self.options.stage2, &self.first_stage.left_out) {
             return Err(FitError::Stage1Alone(reason.clone()));

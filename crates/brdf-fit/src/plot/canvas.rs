@@ -163,7 +163,7 @@ mod tests {
     fn any_name_of_a_sample_gives_valid_xml() {
         let name = "a<b>&\"c\"'\u{1}\u{fffe}\u{7f} \u{3bb}";
         let svg = render(0, |canvas| {
-            canvas.text(name, (10.0, 10.0), 12.0, Anchor::Start)
+            canvas.text(name, (10.0, 10.0), 12.0, Anchor::Start);
         });
         let tree = resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).unwrap();
         assert_eq!((tree.size().width(), tree.size().height()), (960.0, 580.0));

@@ -244,9 +244,9 @@ impl<'a, const P: usize> Problem<'a, P> {
 
     fn by_nelder_mead(self, run: &Run<'_>) -> Result<Minimum, SolverError> {
         let problem = Unbounded::new(self);
-        let start = problem.to_coordinates(&self.start);
+        let start = problem.coordinates_of(&self.start);
         let solver = NelderMead::new(start, problem.steps());
-        let parameters = |x: &_| problem.to_parameters(x);
+        let parameters = |x: &_| problem.parameters_at(x);
         let (mut found, solver) = run.execute(problem, solver, start, parameters)?;
         found.termination = solver.termination().unwrap_or(found.termination);
         Ok(found)

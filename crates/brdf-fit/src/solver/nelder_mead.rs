@@ -37,7 +37,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
     }
 
     /// The coordinates of parameters, each clamped to its range.
-    pub(crate) fn to_coordinates(&self, at: &ModelParameters) -> SVector<f64, P> {
+    pub(crate) fn coordinates_of(&self, at: &ModelParameters) -> SVector<f64, P> {
         self.0.vector(|parameter| {
             let (lowest, highest) = parameter.range();
             let value = parameter.of(at).clamp(lowest, highest);
@@ -50,7 +50,7 @@ impl<'a, const P: usize> Unbounded<'a, P> {
     }
 
     /// The parameters of coordinates, each clamped to its range.
-    pub(crate) fn to_parameters(&self, x: &SVector<f64, P>) -> ModelParameters {
+    pub(crate) fn parameters_at(&self, x: &SVector<f64, P>) -> ModelParameters {
         let mut values = *x;
         for (value, parameter) in values.iter_mut().zip(self.0.free) {
             let (lowest, highest) = parameter.range();
@@ -94,7 +94,7 @@ impl<const P: usize> CostFunction for Unbounded<'_, P> {
     type Output = f64;
 
     fn cost(&self, x: &SVector<f64, P>) -> Result<f64, Error> {
-        let error = self.0.objective.error(&self.to_parameters(x));
+        let error = self.0.objective.error(&self.parameters_at(x));
         Ok(if self.is_inside(x) && error.is_finite() {
             error
         } else {
@@ -237,9 +237,9 @@ mod tests {
             let beyond = SVector::<f64, 5>::from([0.5, 0.5, 0.5, 2.3, 0.5]);
             assert_eq!(problem.cost(&beyond).unwrap(), f64::INFINITY);
             for k1 in [1e-6, 1e3, 1e9] {
-                let edge = problem.to_coordinates(&ModelParameters { k1, ..START });
+                let edge = problem.coordinates_of(&ModelParameters { k1, ..START });
                 assert!(problem.cost(&edge).unwrap().is_finite());
-                assert!(problem.to_parameters(&edge).k1 <= 1e3);
+                assert!(problem.parameters_at(&edge).k1 <= 1e3);
             }
         });
     }
@@ -251,7 +251,7 @@ mod tests {
         ) {
             with_problem(|problem| {
                 let there = ModelParameters { k2, kd, k1: log_k1.exp(), n, p };
-                let back = problem.to_parameters(&problem.to_coordinates(&there));
+                let back = problem.parameters_at(&problem.coordinates_of(&there));
                 for parameter in Parameter::ALL {
                     let (there, back) = (parameter.of(&there), parameter.of(&back));
                     prop_assert!((back - there).abs() < 1e-14 * (1.0 + there));

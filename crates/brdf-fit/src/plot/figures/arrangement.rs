@@ -113,27 +113,23 @@ fn panels_svg(title: &Title, curves: &Curves, axis: &Axis, note: Option<&str>) -
 fn title(layers: &[Layer]) -> Title {
     let join = |of: &dyn Fn(&Layer) -> String| layers.iter().map(of).collect::<Vec<_>>().join("; ");
     let theory = join(&|layer: &Layer| layer.theory.clone());
-    match layers {
-        [one] => {
-            let sample = one.measurements.metadata.get("sample").unwrap_or_default();
-            let colon = if sample.is_empty() { "" } else { ": " };
-            let name = format!("{}{colon}{sample}", one.title());
-            Title {
-                sample: shortened(&name, LONGEST_TITLE),
-                details: theory.clone(),
-                theory,
-                samples: Vec::new(),
-            }
-        }
-        _ => {
-            let names = join(&|layer: &Layer| layer.title());
-            Title {
-                sample: shortened_in_the_middle(&names, LONGEST_TITLE),
-                details: String::new(),
-                theory,
-                samples: layers.iter().map(Layer::line).collect(),
-            }
-        }
+    if let [one] = layers {
+        let sample = one.measurements.metadata.get("sample").unwrap_or_default();
+        let colon = if sample.is_empty() { "" } else { ": " };
+        let name = format!("{}{colon}{sample}", one.title());
+        return Title {
+            sample: shortened(&name, LONGEST_TITLE),
+            details: theory.clone(),
+            theory,
+            samples: Vec::new(),
+        };
+    }
+    let names = join(&|layer: &Layer| layer.title());
+    Title {
+        sample: shortened_in_the_middle(&names, LONGEST_TITLE),
+        details: String::new(),
+        theory,
+        samples: layers.iter().map(Layer::line).collect(),
     }
 }
 

@@ -412,7 +412,7 @@ fn a_full_standard_output_does_not_keep_the_files() {
     assert!(fs::read_to_string(json).unwrap().contains("format_version"));
 }
 
-/// A file system of a few kilobytes, for as long as it is held.
+/// A file system of a few kilobytes, while the value is alive.
 struct SmallDisk {
     folder: TempDir,
 }

@@ -219,7 +219,7 @@ fn bad_usage_is_told() {
         assert!(message.contains(words), "{message}");
         assert!(!message.contains("panicked"), "{message}");
     }
-    // Without a display a window cannot be opened, and the user is told what can be done.
+    // Without a display a window cannot be opened, and the message says what to do.
     let output = viewer(&[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--screenshot"));

@@ -38,6 +38,8 @@ const LENGTH_TOLERANCE: f64 = 1e-6;
 /// sin psi - sin theta = (cos psi + cos theta) tan((psi - theta)/2). The only difference of nearly
 /// equal numbers that remains is psi - theta, which is exact if they are nearly equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Stored"))]
 pub struct Geometry {
     pub(crate) cos_psi: f64,
     pub(crate) cos_theta: f64,
@@ -67,12 +69,60 @@ pub enum GeometryError {
     /// The cosine of the azimuth is not in [-1, 1].
     #[error("cosine of the azimuth = {0}: expected a value in [-1, 1]")]
     AzimuthCosine(f64),
+    /// The functions of the angles in a file do not belong to one pair of directions.
+    #[error("the cosines and tangents do not belong to one pair of directions")]
+    Inconsistent,
     /// A direction vector is not of length 1.
     #[error("direction of length {0}: expected a unit vector")]
     Length(f64),
     /// A direction points into the surface or along it.
     #[error("direction with z = {0}: expected z > 0, the side of the surface normal")]
     BelowSurface(f64),
+}
+
+/// A [`Geometry`] in a file, before it is checked.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Stored {
+    cos_psi: f64,
+    cos_theta: f64,
+    cos_gamma: f64,
+    cos2_gamma: f64,
+    sin2_gamma: f64,
+    tan2_alpha: f64,
+    sec_alpha: f64,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Stored> for Geometry {
+    type Error = GeometryError;
+
+    fn try_from(stored: Stored) -> Result<Self, GeometryError> {
+        for cosine in [stored.cos_psi, stored.cos_theta] {
+            if !(cosine > 0.0 && cosine <= 1.0) {
+                return Err(GeometryError::ZenithCosine(cosine));
+            }
+        }
+        let agree = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs().max(b.abs());
+        let half_vector_z = 0.5 * (stored.cos_psi + stored.cos_theta);
+        if !(stored.tan2_alpha >= 0.0
+            && agree(stored.cos2_gamma + stored.sin2_gamma, 1.0)
+            && agree(stored.cos_gamma * stored.cos_gamma, stored.cos2_gamma)
+            && agree(stored.sec_alpha * stored.sec_alpha, 1.0 + stored.tan2_alpha)
+            && agree(stored.cos_gamma, half_vector_z * stored.sec_alpha))
+        {
+            return Err(GeometryError::Inconsistent);
+        }
+        Ok(Self {
+            cos_psi: stored.cos_psi,
+            cos_theta: stored.cos_theta,
+            cos_gamma: stored.cos_gamma,
+            cos2_gamma: stored.cos2_gamma,
+            sin2_gamma: stored.sin2_gamma,
+            tan2_alpha: stored.tan2_alpha,
+            sec_alpha: stored.sec_alpha,
+        })
+    }
 }
 
 impl Geometry {

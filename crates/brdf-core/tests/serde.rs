@@ -1,7 +1,7 @@
 //! Models, domains and scenes in files.
 
 use brdf_core::scene::{Azimuth, Coordinates, Domain, Scene};
-use brdf_core::{AnyBrdf, Family, ModelParameters, Parameters};
+use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Parameters};
 
 #[test]
 fn models_and_scenes_are_read_as_they_were_written() {
@@ -39,4 +39,31 @@ fn values_outside_the_domain_are_errors() {
     let json = r#"{"incidence": [0.0, 2.0], "view": [0.0, 1.0], "azimuth": "full"}"#;
     let error = serde_json::from_str::<Domain>(json).unwrap_err();
     assert!(error.to_string().contains("from 0 to 2"), "{error}");
+}
+
+#[test]
+fn a_geometry_is_read_as_it_was_written_and_checked() {
+    for (psi, theta, phi) in [
+        (0.0, 0.0, 0.0),
+        (0.5, -0.5, 0.0),
+        (1.2, 0.3, 2.0),
+        (1.57, 1.57, 0.1),
+    ] {
+        let geometry = Geometry::new(psi, theta, phi).unwrap();
+        let json = serde_json::to_string(&geometry).unwrap();
+        assert_eq!(serde_json::from_str::<Geometry>(&json).unwrap(), geometry);
+        let damaged = json.replacen("\"sec_alpha\":", "\"sec_alpha\":1", 1);
+        let error = serde_json::from_str::<Geometry>(&damaged).unwrap_err();
+        assert!(
+            error.to_string().contains("one pair of directions"),
+            "{error}"
+        );
+    }
+    let json = serde_json::to_string(&Geometry::new(0.5, 0.2, 0.0).unwrap()).unwrap();
+    let below = json.replacen("\"cos_psi\":", "\"cos_psi\":-", 1);
+    let error = serde_json::from_str::<Geometry>(&below).unwrap_err();
+    assert!(
+        error.to_string().contains("cosine of a zenith angle"),
+        "{error}"
+    );
 }

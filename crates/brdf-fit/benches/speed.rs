@@ -117,10 +117,10 @@ fn fits(c: &mut Criterion) {
             Depth::Fit,
         ),
         (
-            "the same, prediction, bootstrap, ladder, physics",
+            "the same, cross-validation, bootstrap, model hierarchy, physics",
             Depth::Assessed,
         ),
-        ("the same, neighbours", Depth::Compared),
+        ("the same, reference models", Depth::Compared),
     ] {
         group.bench_function(name, |b| {
             b.iter(|| Report::new(black_box(&scan), &all, depth));
@@ -241,7 +241,7 @@ fn table(c: &mut Criterion) {
         ),
         (
             Depth::Assessed,
-            "the same with prediction, bootstrap, the ladder and physics",
+            "the same with cross-validation, bootstrap, the model hierarchy and physics",
         ),
     ] {
         group.bench_function(name, |b| {

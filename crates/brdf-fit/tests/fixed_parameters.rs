@@ -230,10 +230,15 @@ fn every_part_of_a_report_keeps_what_is_held() {
     let assessment = report.assessment.unwrap();
     assert!(assessment.bootstrap.iter().map(|s| s.parameter).eq(free));
     assert_eq!(assessment.models.len(), Model::ALL.len());
-    for rung in assessment.models {
-        for (parameter, value) in fixed.within(rung.model).iter() {
-            assert_eq!(parameter.of(&rung.parameters), value, "{}", rung.model);
-            assert!(rung.estimates.iter().all(|e| e.parameter != parameter));
+    for candidate in assessment.models {
+        for (parameter, value) in fixed.within(candidate.model).iter() {
+            assert_eq!(
+                parameter.of(&candidate.parameters),
+                value,
+                "{}",
+                candidate.model
+            );
+            assert!(candidate.estimates.iter().all(|e| e.parameter != parameter));
         }
     }
 }

@@ -112,13 +112,13 @@ fn every_iteration_of_both_stages_is_told_from_the_start_on() {
 fn phases_come_one_after_another_and_change_no_number() {
     let (observer, scan, options) = (Recorder::default(), bright(), everything());
     let given = ModelChoice::Given;
-    let (watched, error) = Report::observed(&scan, &options, given, Depth::Assessed, &observer);
+    let (observed, error) = Report::observed(&scan, &options, given, Depth::Assessed, &observer);
     assert_eq!(error, None);
     let (plain, _) = Report::new(&scan, &options, Depth::Assessed);
-    let fits = [&watched, &plain].map(|report| without_times(report.fit.clone().unwrap()));
+    let fits = [&observed, &plain].map(|report| without_times(report.fit.clone().unwrap()));
     assert_eq!(fits[0], fits[1]);
-    assert_eq!(watched.uncertainty, plain.uncertainty);
-    assert_eq!(watched.assessment, plain.assessment);
+    assert_eq!(observed.uncertainty, plain.uncertainty);
+    assert_eq!(observed.assessment, plain.assessment);
     let mut phases: Vec<Phase> = Vec::new();
     for step in observer.steps.lock().unwrap().iter() {
         if phases.last() != Some(&step.phase) {

@@ -199,7 +199,7 @@ fn stage_1_alone_is_the_fit_of_a_scan_that_ends_at_its_limit() {
         );
     }
     assert_eq!(report.warnings.len(), expected.warnings.len());
-    // E over all readings is told of the stage alone.
+    // The stage reports E over all readings as well.
     let stage = fit.stage1.unwrap();
     let family = options.model.family();
     let all = Objective::new(&whole, family, 1.5, &options.weights).unwrap();

@@ -142,7 +142,8 @@ impl Metadata {
 }
 
 /// The readings of a scan, with the metadata of its file.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Stored")]
 pub struct Measurements {
     /// The source of the readings: the path of a file, or a name that the caller gives.
     pub source: String,
@@ -163,6 +164,39 @@ pub struct Measurements {
     /// those of a goniometer; otherwise `None`.
     pub(crate) incidence_class: Option<f64>,
     pub(crate) readings: Vec<Measurement>,
+}
+
+/// [`Measurements`] in a file, before the readings are checked.
+#[derive(Deserialize)]
+struct Stored {
+    source: String,
+    metadata: Metadata,
+    refractive_index: Option<RefractiveIndex>,
+    ignored_columns: Vec<String>,
+    convention: Convention,
+    format: Format,
+    conversions: Vec<String>,
+    incidence_class: Option<f64>,
+    readings: Vec<Measurement>,
+}
+
+impl TryFrom<Stored> for Measurements {
+    type Error = MeasurementError;
+
+    fn try_from(stored: Stored) -> Result<Self, MeasurementError> {
+        let checked = Self::new(stored.source, stored.readings)?;
+        let is_width = |width: &f64| *width > 0.0 && width.is_finite();
+        Ok(Self {
+            metadata: stored.metadata,
+            refractive_index: stored.refractive_index,
+            ignored_columns: stored.ignored_columns,
+            convention: stored.convention,
+            format: stored.format,
+            conversions: stored.conversions,
+            incidence_class: stored.incidence_class.filter(is_width),
+            ..checked
+        })
+    }
 }
 
 impl Measurements {
@@ -362,6 +396,17 @@ fn by_value(a: &Option<f64>, b: &Option<f64>) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_json_reads_back_and_is_checked() {
+        let mut scan = Measurements::new("test", vec![reading(0.5, 0.3, -0.3, 0.0)]).unwrap();
+        scan.refractive_index = Some(RefractiveIndex::Same(1.5));
+        let json = serde_json::to_string(&scan).unwrap();
+        assert_eq!(serde_json::from_str::<Measurements>(&json).unwrap(), scan);
+        let outside = json.replacen("\"psi\":0.3", "\"psi\":1.6", 1);
+        let error = serde_json::from_str::<Measurements>(&outside).unwrap_err();
+        assert!(error.to_string().contains("psi = 1.6"), "{error}");
+    }
 
     fn reading(wavelength_um: f64, psi: f64, theta: f64, phi: f64) -> Measurement {
         Measurement {

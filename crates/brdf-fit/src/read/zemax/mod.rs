@@ -72,6 +72,7 @@ use super::text::Text;
 use crate::scan::{Convention, Format, Measurements, Metadata, RefractiveIndex};
 use readings::Readings;
 use sections::Header;
+#[cfg(feature = "export")]
 pub(crate) use specular::from_specular;
 use tokens::Tokens;
 

@@ -5,9 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
+pub(super) use crate::output::is_standard_stream as is_stream;
 use crate::output::{TakenError, WriteError, check_outputs, write_file};
 use crate::read::{LazyScan, ReadError, ReadOptions};
-use crate::report::{Document, DocumentError};
+use crate::report::DocumentError;
 use crate::scan::Measurements;
 
 /// What a report and a message call the input `-`.
@@ -40,11 +41,6 @@ pub(super) enum StreamError {
     Folder(&'static str),
     #[error(transparent)]
     Taken(#[from] TakenError),
-}
-
-/// Whether a path is `-`.
-pub(super) fn is_stream(path: &Path) -> bool {
-    path.as_os_str() == "-"
 }
 
 /// The path of an input as reports and messages show it.
@@ -107,14 +103,6 @@ pub(super) fn scans(path: &Path, options: &ReadOptions) -> Result<Vec<LazyScan>,
         .into_iter()
         .map(LazyScan::Loaded)
         .collect())
-}
-
-/// The document of a file, or of standard input.
-pub(super) fn document(path: &Path) -> Result<Document, DocumentError> {
-    if !is_stream(path) {
-        return Document::read(path);
-    }
-    Document::from_bytes(Path::new(INPUT), &bytes()?)
 }
 
 /// Everything on standard input.

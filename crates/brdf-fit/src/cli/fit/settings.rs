@@ -109,10 +109,7 @@ impl Arguments {
 
     /// The document of `--again`.
     pub(super) fn document(&self) -> Result<Option<Document>, DocumentError> {
-        self.again
-            .as_ref()
-            .map(|path| stream::document(path))
-            .transpose()
+        self.again.as_ref().map(Document::read).transpose()
     }
 
     /// How a file is read: as the options say, next as the document states for this file, and next

@@ -11,7 +11,6 @@ use super::arguments::{Evaluation, Outputs};
 use super::values::Row;
 use crate::cli::failure::Failure;
 use crate::cli::outcome::Outcome;
-use crate::cli::stream;
 use crate::fit::Fit;
 use crate::report::{Document, Report};
 use crate::scan::WAVELENGTH_TOLERANCE;
@@ -45,7 +44,7 @@ impl Evaluation {
             let Row { name, brdf } = row.map_err(Failure::Row)?;
             return Ok((name, brdf));
         };
-        let document = stream::document(path)?;
+        let document = Document::read(path)?;
         let (report, fit) = self.fit(path, &document)?;
         let at = ModelParameters {
             p: fit.p,

@@ -1,7 +1,7 @@
 """
 A MERL table as the real Mitsuba sees it: reads a job as JSON from standard input, the path of a
 table, bins of theta_h, theta_d and phi_d, and pairs of directions, and writes as JSON f_r of red,
-green and blue, in 1/sr; null where Dr.Jit finds no LLVM.
+green and blue, in 1/sr; null where there is no LLVM that Dr.Jit can use.
 
 Mitsuba reads no MERL tables, but `measured_polarized` has tables in the same coordinates. The bins
 are handed to it in the middle of each, so that it turns directions into half and difference angles.
@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 import drjit as dr
+import llvm
 import mitsuba as mi
 import numpy as np
 
@@ -83,7 +84,7 @@ def evaluate(path, bins, sources, views):
 
 def main():
     job = json.load(sys.stdin)
-    if not dr.has_backend(dr.JitBackend.LLVM):
+    if not llvm.usable():
         return json.dump(None, sys.stdout)
     mi.set_variant("llvm_ad_rgb")
     with contextlib.redirect_stdout(sys.stderr):

@@ -9,6 +9,7 @@ import json
 import sys
 
 import drjit as dr
+import llvm
 import mitsuba as mi
 import numpy as np
 
@@ -130,7 +131,7 @@ STEPS = {"points": points, "chi2": chi2, "weights": weights, "picture": picture}
 
 def main():
     job = json.load(sys.stdin)
-    if job["variant"].startswith("llvm") and not dr.has_backend(dr.JitBackend.LLVM):
+    if job["variant"].startswith("llvm") and not llvm.usable():
         return json.dump(None, sys.stdout)
     mi.set_variant(job["variant"])
     with contextlib.redirect_stdout(sys.stderr):

@@ -33,7 +33,7 @@ pub fn python(module: &str) -> Option<PathBuf> {
 
 /// What a script of `tests/python` makes of a job, which it reads from standard input; both are JSON.
 /// `None`, and "skipped" on standard output, where no Python has the module, and where the script
-/// writes null: it found no LLVM.
+/// writes null: there is no LLVM that it can use.
 pub fn run_python(module: &str, script: &str, job: &Value) -> Option<Value> {
     let mut program = Command::new(python(module)?)
         .arg(in_workspace("tests/python").join(script))
@@ -52,7 +52,7 @@ pub fn run_python(module: &str, script: &str, job: &Value) -> Option<Value> {
     written.expect("python reads the job");
     let found: Option<Value> = serde_json::from_slice(&output.stdout).expect("JSON");
     if found.is_none() {
-        println!("skipped: no LLVM for {script}");
+        println!("skipped: no LLVM that {script} can use");
     }
     found
 }

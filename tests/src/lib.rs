@@ -114,8 +114,7 @@ fn built() -> Vec<PathBuf> {
         .manifest_path(in_workspace("Cargo.toml"))
         .arg("--workspace")
         .bins()
-        .current_release()
-        .current_target();
+        .current_release();
     let messages = build.exec().expect("the programs build");
     let programs = messages.filter_map(|message| {
         let message = message.expect("the programs build");

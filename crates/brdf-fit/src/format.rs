@@ -73,6 +73,20 @@ pub fn rounded(value: f64, error: f64) -> String {
     }
 }
 
+/// A percentage with two significant digits, whole above 10.
+pub fn two_digits(value: f64) -> String {
+    if !value.is_finite() {
+        return "?".to_owned();
+    }
+    let decimals = match value.abs() {
+        size if size >= 9.95 => 0,
+        size if size >= 0.995 => 1,
+        size if size >= 0.0995 => 2,
+        _ => return shortest(format!("{value:.1e}").parse().unwrap_or(value)),
+    };
+    format!("{value:.decimals$}")
+}
+
 /// An angle in degrees, from radians, rounded so that an angle that was given in degrees is
 /// recovered exactly.
 pub fn in_degrees(radians: f64) -> f64 {

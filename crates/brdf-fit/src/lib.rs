@@ -55,6 +55,7 @@ pub mod tradeoff;
 
 pub use fit::energy::{DEFAULT_LIMIT_DEG as ENERGY_LIMIT_DEG, EnergyConstraint};
 pub use fit::grid_search::{ProfilePoint, best_weights};
+pub use fit::relative::RelativeFit;
 pub use fit::robust::{Loss, REJECTED, Rejected, RobustFit};
 pub use fit::start::{InitialValues, WeightsRoute, WidthRoute};
 pub use fit::{
@@ -63,14 +64,17 @@ pub use fit::{
 };
 pub use format::ParseError;
 pub use inference::{
-    ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Estimate, Interval,
-    Knowledge, LeftOut, NOT_DESCRIBED_PERCENT, Noise, Physics, RESAMPLES, Reflectance, Spread,
-    Uncertainty, VERDICT_MARGIN, Verdict, Warning, assess,
+    ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Deviations, ErrorSizes,
+    Estimate, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise, NoiseTests, Physics,
+    PredictedIncidence, Quality, Reflectance, RelativePrediction, Reliance, TEST_LEVEL, Uncertainty,
+    VERDICT_MARGIN, Verdict, Warning, Without, assess, most_influential, rests_on,
 };
 pub use model::{
     DEFAULT_N, FixedError, FixedParameters, K1_RANGE, Model, N_RANGE, Parameter, ReducedModel,
 };
-pub use objective::weights::{AngleWeight, Weights, solid_angles};
+pub use objective::weights::{
+    AngleWeight, AssumedErrors, RELATIVE_FLOOR, Weights, solid_angles,
+};
 pub use objective::{IncidenceError, MOST_FOLDS, NormalEquations, Objective, ObjectiveError};
 pub use progress::{Cancelled, NoObserver, Observer, Phase, Step};
 pub use read::{LazyScan, ReadError, ReadOptions};

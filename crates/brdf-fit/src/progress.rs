@@ -15,13 +15,15 @@ pub enum Phase {
     Stage2,
     /// The check against the global optimum.
     GlobalCheck,
+    /// The fit of relative errors.
+    Relative,
     /// The fit with a robust loss.
     Robust,
     /// The fit under the energy constraint rho(psi) <= 1.
     Energy,
     /// Intervals of the parameters, and warnings.
     Uncertainty,
-    /// Cross-validation, bootstrap and the model hierarchy. If the scan chooses the model, this phase
+    /// Cross-validation, sensitivity and the model hierarchy. If the scan chooses the model, this phase
     /// also comes first.
     Assessment,
 }
@@ -32,6 +34,7 @@ impl fmt::Display for Phase {
             Self::Stage1 => "stage 1",
             Self::Stage2 => "stage 2",
             Self::GlobalCheck => "global check",
+            Self::Relative => "relative fit",
             Self::Robust => "robust fit",
             Self::Energy => "energy",
             Self::Uncertainty => "uncertainty",

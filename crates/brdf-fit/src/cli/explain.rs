@@ -108,16 +108,6 @@ pub(super) fn warning(warning: &Warning) -> String {
     }
 }
 
-/// The text of a report with its warnings explained.
-pub(super) fn report(text: String, warnings: &[Warning]) -> String {
-    warnings.iter().fold(text, |text, of_library| {
-        match (of_library.to_string(), warning(of_library)) {
-            (plain, explained) if plain != explained => text.replace(&plain, &explained),
-            _ => text,
-        }
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

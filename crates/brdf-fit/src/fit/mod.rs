@@ -2,8 +2,8 @@
 //!
 //! [`FitProblem`] validates a scan and builds the objective; [`fit`] solves it. The stages start from
 //! the paper's initial values ([`start`]); the check searches the exact profile of E over the width
-//! ([`grid_search`]); a robust loss ([`robust`]) and the energy constraint ([`energy`]) follow where
-//! the options ask for them.
+//! ([`grid_search`]); the weights of relative errors ([`relative`]), a robust loss ([`robust`]) and the
+//! energy constraint ([`energy`]) follow where the options ask for them.
 
 pub(crate) mod energy;
 mod error;
@@ -12,6 +12,7 @@ pub(crate) mod grid_search;
 mod options;
 mod problem;
 mod result;
+pub(crate) mod relative;
 pub(crate) mod robust;
 pub(crate) mod start;
 

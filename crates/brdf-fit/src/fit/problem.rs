@@ -13,11 +13,13 @@ use super::global_check::{Checked, check_globally};
 use super::grid_search::GridSearch;
 use super::options::FitOptions;
 use super::result::{FORMAT_VERSION, Fit, OwnAndAll, Stage};
-use super::robust::{RobustFit, fit_robustly};
+use super::relative::{RelativeFit, fit_relatively};
+use super::robust::{RobustFit, RobustWeights, fit_robustly};
 use super::start::{InitialValues, initial_values};
 use crate::format::{counted, in_degrees};
 use crate::model::{DEFAULT_N, FixedParameters, Parameter, ReducedModel};
 use crate::objective::Objective;
+use crate::objective::weights::AssumedErrors;
 use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
 use crate::scan::{Incidence, Measurements, up_to};
 use crate::solver::{Method, minimise};
@@ -52,17 +54,62 @@ struct FirstStage {
 #[derive(Debug)]
 pub(crate) struct Solution {
     pub(crate) fit: Fit,
-    /// The objective that was minimised, with the weights of a robust loss.
+    /// The objective that was minimised, with the weights of relative errors and of a robust loss.
     pub(crate) objective: Objective,
-    /// The grid search of the global check; `None` where the check was left out.
-    pub(crate) search: Option<GridSearch>,
+    /// The last grid search; `None` where the check was left out.
+    search: Option<Searched>,
+    /// The weights of a robust loss.
+    robust: Option<RobustWeights>,
+}
+
+/// A grid search, and its objective where that is not the one of the solution.
+#[derive(Debug)]
+struct Searched {
+    search: GridSearch,
+    objective: Option<Objective>,
 }
 
 impl Solution {
-    /// The grid search of the global check, or a new one where the check was left out.
+    /// The grid search of the fit, or a new one where the check was left out.
     pub(crate) fn grid_search(&self, progress: &Progress<'_>) -> Result<GridSearch, Cancelled> {
         let new = || GridSearch::new(&self.objective, self.fit.options.reduced_model(), progress);
-        self.search.clone().map_or_else(new, Ok)
+        let search = self.search.as_ref().map(|searched| searched.search.clone());
+        search.map_or_else(new, Ok)
+    }
+
+    /// The objective of [`grid_search`](Self::grid_search).
+    pub(crate) fn searched(&self) -> &Objective {
+        let searched = self.search.as_ref();
+        let own = searched.and_then(|searched| searched.objective.as_ref());
+        own.unwrap_or(&self.objective)
+    }
+
+    /// The objective without the weights of a robust loss.
+    pub(crate) fn without_loss(&self) -> &Objective {
+        let robust = self.robust.as_ref();
+        robust.map_or(&self.objective, |robust| &robust.objective)
+    }
+
+    /// The weights of a robust loss, one for each row.
+    pub(crate) fn robust(&self) -> Option<&RobustWeights> {
+        self.robust.as_ref()
+    }
+
+    /// The same fit with the objective of some of its readings, one row for each.
+    pub(crate) fn over(&self, measurements: &Measurements) -> Result<Self, FitError> {
+        let fit = self.fit.clone();
+        let weights = &fit.options.weights;
+        let family = fit.model().family();
+        let mut objective = Objective::new(measurements, family, fit.n, weights)?;
+        if weights.errors == AssumedErrors::Relative {
+            objective = objective.relative(Some(&fit.at()))?;
+        }
+        Ok(Self {
+            fit,
+            objective,
+            search: None,
+            robust: None,
+        })
     }
 }
 
@@ -90,10 +137,12 @@ impl<'a> FitProblem<'a> {
             return Err(too_few(0, model));
         }
         let n = refractive_index(measurements, options, wavelength_um)?;
-        // A robust loss weights each reading by itself.
-        let build = match options.robust {
-            None => Objective::condensed,
-            Some(_) => Objective::new,
+        // These weigh each reading by itself.
+        let relative = options.weights.errors == AssumedErrors::Relative;
+        let build = if options.robust.is_some() || relative {
+            Objective::new
+        } else {
+            Objective::condensed
         };
         let all = build(measurements, model.family(), n, &options.weights)?;
         let first_stage = FirstStage::choose(&all, measurements.incidences(), options);
@@ -171,11 +220,13 @@ impl<'a> FitProblem<'a> {
             fit,
             weighted,
             search,
+            robust,
         } = self.run(observer)?;
         Ok(Solution {
             fit,
             objective: weighted.unwrap_or_else(|| self.into_objective()),
             search,
+            robust,
         })
     }
 
@@ -224,14 +275,20 @@ impl<'a> FitProblem<'a> {
             stage1_left_out: self.first_stage.left_out.clone(),
             stage2,
             global_check: checked.report,
+            relative: refined.relative,
             robust: refined.robust,
             energy: refined.energy,
             seconds: started.elapsed().as_secs_f64(),
         };
+        let of_check = checked.search.map(|search| Searched {
+            search,
+            objective: refined.weighted.is_some().then(|| fitted.clone()),
+        });
         Ok(Run {
             fit,
             weighted: refined.weighted,
-            search: checked.search,
+            search: refined.search.or(of_check),
+            robust: refined.robust_weights,
         })
     }
 
@@ -353,20 +410,37 @@ impl<'a> FitProblem<'a> {
         let mut refined = Refined {
             parameters,
             weighted: None,
+            relative: None,
+            search: None,
             robust: None,
+            robust_weights: None,
             energy: None,
         };
+        if self.options.weights.errors == AssumedErrors::Relative {
+            let progress = Progress::begin(observer, Phase::Relative)?;
+            let found = fit_relatively(self.objective(), self.model, &progress)?;
+            refined.relative = Some(RelativeFit {
+                least_squares: parameters,
+                least_squares_e_percent: 100.0 * self.objective().error(&parameters),
+            });
+            refined.parameters = found.at;
+            refined.weighted = Some(found.objective);
+            refined.search = Some(Searched {
+                search: found.search,
+                objective: Some(found.searched),
+            });
+        }
         if let Some(loss) = self.options.robust {
             let progress = Progress::begin(observer, Phase::Robust)?;
-            let (at, weighted, robust) = fit_robustly(
-                self.objective(),
+            let (at, weighted, robust, weights) = fit_robustly(
+                refined.weighted.as_ref().unwrap_or(self.objective()),
                 loss,
-                parameters,
+                refined.parameters,
                 self.model.free(),
                 &progress,
             )?;
-            (refined.parameters, refined.weighted, refined.robust) =
-                (at, Some(weighted), Some(robust));
+            (refined.parameters, refined.weighted) = (at, Some(weighted));
+            (refined.robust, refined.robust_weights) = (Some(robust), Some(weights));
         }
         if let Some(limit) = self.options.energy_limit {
             let objective = refined.weighted.as_ref().unwrap_or(self.objective());
@@ -387,17 +461,21 @@ impl<'a> FitProblem<'a> {
 /// A fit with the objects that it was made with.
 struct Run {
     fit: Fit,
-    /// The objective with the weights of a robust loss.
+    /// The objective with the weights of relative errors and of a robust loss.
     weighted: Option<Objective>,
-    search: Option<GridSearch>,
+    search: Option<Searched>,
+    robust: Option<RobustWeights>,
 }
 
-/// The result of the robust loss and the energy constraint.
+/// The result of the weights of relative errors, the robust loss and the energy constraint.
 struct Refined {
     parameters: ModelParameters,
-    /// The objective with the weights of a robust loss.
+    /// The objective with the weights of relative errors and of a robust loss.
     weighted: Option<Objective>,
+    relative: Option<RelativeFit>,
+    search: Option<Searched>,
     robust: Option<RobustFit>,
+    robust_weights: Option<RobustWeights>,
     energy: Option<EnergyConstraint>,
 }
 

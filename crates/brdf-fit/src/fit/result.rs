@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::energy::EnergyConstraint;
 use super::grid_search::ProfilePoint;
 use super::options::FitOptions;
+use super::relative::RelativeFit;
 use super::robust::RobustFit;
 use super::start::InitialValues;
 use crate::model::{Model, Parameter};
@@ -53,6 +54,9 @@ pub struct Fit {
     pub stage2: Option<Stage>,
     /// The check against the global optimum; `None` if it is omitted.
     pub global_check: Option<GlobalCheck>,
+    /// The fit of constant errors that a fit of relative errors starts from, if requested.
+    #[serde(default)]
+    pub relative: Option<RelativeFit>,
     /// The result of the robust loss, if requested.
     #[serde(default)]
     pub robust: Option<RobustFit>,
@@ -122,6 +126,11 @@ impl Fit {
     /// The model.
     pub fn model(&self) -> Model {
         self.options.model
+    }
+
+    /// The rms error over the rms reading, both of f_r cos theta, in percent: sqrt(E).
+    pub fn rms_percent(&self) -> f64 {
+        10.0 * self.e_percent.max(0.0).sqrt()
     }
 
     /// The last stage.

@@ -117,6 +117,17 @@ pub struct Rejected {
     pub deviations: f64,
 }
 
+/// The weights of a robust fit, for the influence of each reading on its parameters.
+#[derive(Debug, Clone)]
+pub(crate) struct RobustWeights {
+    /// The objective without the weights of the loss.
+    pub(crate) objective: Objective,
+    /// The weight of the loss of each row.
+    pub(crate) weights: Vec<f64>,
+    /// The mean derivative of weight times residual by the residual.
+    pub(crate) mean_slope: f64,
+}
+
 /// The minimum under a robust loss next to that of least squares, by iteratively reweighted least
 /// squares. Returns the parameters, the objective with the last weights, and a summary.
 ///
@@ -128,7 +139,7 @@ pub(crate) fn fit_robustly(
     start: ModelParameters,
     free: &[Parameter],
     progress: &Progress<'_>,
-) -> Result<(ModelParameters, Objective, RobustFit), FitError> {
+) -> Result<(ModelParameters, Objective, RobustFit, RobustWeights), FitError> {
     let (mut at, mut weighted, mut scale) =
         reweighted_fit(objective, Loss::Huber, start, free, None, progress)?;
     if loss == Loss::Tukey {
@@ -161,7 +172,13 @@ pub(crate) fn fit_robustly(
         reduced,
         rejected,
     };
-    Ok((at, weighted, robust))
+    let mean_slope = mean(&deviations, |d| loss.slope(d));
+    let weights = RobustWeights {
+        objective: objective.clone(),
+        weights: deviations.iter().map(|&d| loss.weight(d)).collect(),
+        mean_slope: if mean_slope > 0.0 { mean_slope } else { 1.0 },
+    };
+    Ok((at, weighted, robust, weights))
 }
 
 fn reweighted_fit(
@@ -203,15 +220,17 @@ fn reweighted_fit(
     Ok((at, weighted, scale))
 }
 
+fn mean(deviations: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+    deviations.iter().map(|&d| of(d)).sum::<f64>() / deviations.len() as f64
+}
+
 /// [`RobustFit::variance_factor`]: the mean square of weight times deviation over the square of its
 /// mean slope, relative to the value that weighted least squares implies.
 fn variance_factor(loss: Loss, deviations: &[f64]) -> f64 {
-    let mean = |of: &dyn Fn(f64) -> f64| {
-        deviations.iter().map(|&d| of(d)).sum::<f64>() / deviations.len() as f64
-    };
-    let influence = mean(&|d| (loss.weight(d) * d).powi(2));
-    let slope = mean(&|d| loss.slope(d));
-    let weighted = mean(&|d| loss.weight(d) * d * d) / mean(&|d| loss.weight(d));
+    let influence = mean(deviations, |d| (loss.weight(d) * d).powi(2));
+    let slope = mean(deviations, |d| loss.slope(d));
+    let weighted = mean(deviations, |d| loss.weight(d) * d * d)
+        / mean(deviations, |d| loss.weight(d));
     let factor = influence / (slope * slope) / weighted;
     if factor.is_finite() {
         factor.max(1.0)

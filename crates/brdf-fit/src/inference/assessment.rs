@@ -5,13 +5,11 @@ use std::collections::HashSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::cross_validation::{CrossValidation, leave_one_out};
-use super::model_comparison::{
-    Candidate, LeftOut, Verdict, assessed_readings, compare, least_squares, verdict,
-};
+use super::cross_validation::{CrossValidation, cross_validation};
+use super::model_comparison::{Candidate, LeftOut, assessed_readings, compare, least_squares};
 use super::physics::Physics;
-use super::refit::Refitter;
-use super::resampling::{Spread, bootstrap};
+use super::refit::{Refitter, Without, sensitivity};
+use super::verdict::{Verdict, verdict};
 use crate::fit::{Fit, FitError, FitOptions, fit_scan};
 use crate::model::Model;
 use crate::progress::{NoObserver, Observer, Phase, Progress};
@@ -26,9 +24,9 @@ pub struct Assessment {
     pub readings: usize,
     /// E of the fit over the assessed readings, in percent.
     pub e_percent: f64,
-    /// The spread of each parameter over bootstrap resamples of the incidences; empty with fewer
-    /// than 3 incidences.
-    pub bootstrap: Vec<Spread>,
+    /// The fit without each incidence; empty where incidences are left out several at a time.
+    #[serde(default)]
+    pub sensitivity: Vec<Without>,
     /// The prediction of each incidence from the other incidences; `None` where nothing can be
     /// predicted, as with a single incidence.
     #[serde(rename = "prediction")]
@@ -46,8 +44,9 @@ pub struct Assessment {
 /// Assesses a fit of the measurements and compares it with the models of the hierarchy; with
 /// `compare` also with the reference models.
 ///
-/// Cross-validation, bootstrap and models are those of least squares fits without the condition
-/// rho(psi) <= 1. Readings that a robust fit rejects are left out of all of them. Models that cannot
+/// Cross-validation and models are those of least squares fits without the condition
+/// rho(psi) <= 1; the sensitivity is that of the fit itself without this condition. Readings that a
+/// robust fit rejects are left out of all of them. Models that cannot
 /// be fitted, for too few readings or without a refractive index, are listed with the reason.
 ///
 /// # Errors
@@ -99,7 +98,7 @@ pub(crate) fn assess_observed(
     let options = least_squares(&fit.options);
     let (compared, diagnostics) = rayon::join(
         || compare(scan, models, &options, &progress),
-        || Diagnostics::of(scan, &options, &progress),
+        || Diagnostics::of(scan, &fit.options, &progress),
     );
     let (models, left_out) = compared?;
     let diagnostics = diagnostics?;
@@ -109,7 +108,7 @@ pub(crate) fn assess_observed(
     Ok(Assessment {
         readings: scan.readings().len(),
         e_percent: diagnostics.e_percent,
-        bootstrap: diagnostics.bootstrap,
+        sensitivity: diagnostics.sensitivity,
         cross_validation: diagnostics.cross_validation,
         physics,
         verdict: verdict(&models),
@@ -132,7 +131,7 @@ fn accepted_readings(measurements: &Measurements, fit: &Fit) -> Option<Measureme
 /// What the assessed readings show about the fit of the chosen model.
 struct Diagnostics {
     e_percent: f64,
-    bootstrap: Vec<Spread>,
+    sensitivity: Vec<Without>,
     cross_validation: Option<CrossValidation>,
 }
 
@@ -142,12 +141,25 @@ impl Diagnostics {
         options: &FitOptions,
         progress: &Progress<'_>,
     ) -> Result<Self, FitError> {
-        let fitted = fit_scan(scan, options, progress)?;
-        let refitter = Refitter::new(&fitted, progress)?;
+        let own = FitOptions {
+            energy_limit: None,
+            ..options.clone()
+        };
+        let fitted = fit_scan(scan, &own, progress)?;
+        let fits = Refitter::new(&fitted, progress)?.without_each_fold()?;
+        let sensitivity = sensitivity(&fitted.objective, &fits);
+        let plain = least_squares(options);
+        let cross_validation = if plain == own {
+            cross_validation(&fitted.objective, &fits)
+        } else {
+            let fitted = fit_scan(scan, &plain, progress)?;
+            let fits = Refitter::new(&fitted, progress)?.without_each_fold()?;
+            cross_validation(&fitted.objective, &fits)
+        };
         Ok(Self {
             e_percent: fitted.fit.e_percent,
-            bootstrap: bootstrap(&refitter)?,
-            cross_validation: leave_one_out(&refitter)?,
+            sensitivity,
+            cross_validation,
         })
     }
 }
@@ -197,7 +209,7 @@ mod tests {
         let assessment = assessment(&one, false);
         assert_eq!(assessment.cross_validation, None);
         assert_eq!(assessment.verdict, None);
-        assert!(assessment.bootstrap.is_empty());
+        assert!(assessment.sensitivity.is_empty());
     }
 
     #[test]

@@ -48,13 +48,25 @@ pub struct Estimate {
 pub enum Knowledge {
     /// The data determine the parameter.
     Determined {
-        /// Standard error of the linear theory: the square root of the parameter's variance in
+        /// Standard error: the square root of the parameter's variance in
         /// [`Uncertainty::covariance`](super::Uncertainty::covariance).
         standard_error: f64,
-        /// Profile-likelihood interval at a confidence level of 68 %.
+        /// The degrees of freedom of the standard error.
+        #[serde(default)]
+        degrees_of_freedom: Option<f64>,
+        /// Interval at a confidence level of 68 %.
         interval_68: Interval,
-        /// Profile-likelihood interval at a confidence level of 95 %.
+        /// Interval at a confidence level of 95 %.
         interval_95: Interval,
+        /// The interval of 95 % if the errors were independent and of constant size in f_r cos theta.
+        /// With other errors it is far too short.
+        #[serde(default)]
+        interval_constant_noise: Option<Interval>,
+    },
+    /// The parameter has no interval that could be trusted.
+    NoInterval {
+        /// Why, as a clause.
+        reason: String,
     },
     /// The condition rho(psi) <= 1 is active: the fit is not at the minimum of E, so that the
     /// growth of E around it is no measure of the uncertainty.
@@ -62,24 +74,33 @@ pub enum Knowledge {
     ConstrainedByEnergy,
     /// The parameter is on a bound of its range and is not part of the covariance.
     OnBound {
-        /// Profile-likelihood interval at a confidence level of 95 %, which ends at the bound on
-        /// one side.
+        /// Interval at a confidence level of 95 %, for a weight at zero; unbounded for others.
         interval_95: Interval,
     },
     /// The data do not determine the parameter: its value is arbitrary within the interval.
     NotDetermined {
         /// Why, as a clause.
         reason: String,
-        /// Profile-likelihood interval at a confidence level of 95 %.
+        /// The range of the parameter that the data leave; unbounded where it is not known.
         interval_95: Interval,
     },
+}
+
+impl Knowledge {
+    /// That the data do not determine a parameter.
+    pub(super) fn not_determined(reason: &str) -> Self {
+        Self::NotDetermined {
+            reason: reason.to_owned(),
+            interval_95: Interval::UNBOUNDED,
+        }
+    }
 }
 
 impl Estimate {
     /// The interval at a confidence level of 95 %, unbounded where none is known.
     pub fn interval_95(&self) -> Interval {
         match self.knowledge {
-            Knowledge::ConstrainedByEnergy => Interval::UNBOUNDED,
+            Knowledge::ConstrainedByEnergy | Knowledge::NoInterval { .. } => Interval::UNBOUNDED,
             Knowledge::Determined { interval_95, .. }
             | Knowledge::OnBound { interval_95 }
             | Knowledge::NotDetermined { interval_95, .. } => interval_95,
@@ -127,6 +148,7 @@ impl fmt::Display for Estimate {
             Knowledge::ConstrainedByEnergy => {
                 f.pad(&format!("{value:.4} (constrained by rho <= 1)"))
             }
+            Knowledge::NoInterval { .. } => f.pad(&format!("{value:.4} (no interval)")),
             Knowledge::NotDetermined { .. } => f.pad("not determined"),
         }
     }
@@ -152,8 +174,10 @@ mod tests {
         };
         let determined = Knowledge::Determined {
             standard_error: 0.0123,
+            degrees_of_freedom: Some(10.0),
             interval_68: interval(0.18, Some(0.2)),
             interval_95: interval(0.1652, None),
+            interval_constant_noise: None,
         };
         assert_eq!(
             estimate(0.19076, determined).to_string(),

@@ -1,45 +1,47 @@
-//! Inference from a fit beyond its parameters: their uncertainty, the prediction of other
-//! incidences, the model that suffices, and warnings.
+//! Inference from a fit beyond its parameters: their intervals, the errors of the readings, the
+//! prediction of other incidences, the model that suffices, and warnings.
 //!
 //! ```text
-//! estimate, covariance -> profile_likelihood -> uncertainty --+
-//! refit -> cross_validation, resampling ----------------------+-> model_comparison -> assessment, warning
-//! physics ----------------------------------------------------+
+//! terms, variance_components -> noise --------+
+//! undetermined -------------------------------+-> uncertainty --+
+//! refit -> cross_validation, sensitivity -----------------------+-> model_comparison -> verdict
+//! physics ------------------------------------------------------+-> assessment, warning
 //! ```
 //!
-//! E of eq. (5) is a sum of squares: its minimum is the maximum of the likelihood where the terms
-//! under the sum have independent normal errors of equal variance. The deviations of a model from a
-//! real sample are systematic and rarely such errors, so that intervals and AICc are optimistic. The
-//! bootstrap over incidences and the cross-validation assume only that the incidences are
-//! independent of each other.
+//! E of eq. (5) is minimised whatever the errors of the readings are. What is said about the result
+//! rests on errors that are estimated from the residuals: a constant, one per reading, one common to
+//! neighbouring readings and one per incidence.
 
 mod assessment;
-mod covariance;
 mod cross_validation;
+mod deviations;
 mod estimate;
 mod model_comparison;
+mod noise;
 mod physics;
-mod profile_likelihood;
 mod refit;
-mod resampling;
+mod terms;
 #[cfg(test)]
 mod test_scans;
 mod uncertainty;
+mod undetermined;
+mod variance_components;
+mod verdict;
 mod warning;
 
 pub use assessment::{Assessment, assess};
-pub use covariance::Noise;
-pub use cross_validation::CrossValidation;
+pub use cross_validation::{CrossValidation, PredictedIncidence, RelativePrediction};
+pub use deviations::{Deviations, Quality};
 pub use estimate::{Estimate, Interval, Knowledge};
-pub use model_comparison::{
-    ASSESSED_BINS, ASSESSED_READINGS, Candidate, LeftOut, NOT_DESCRIBED_PERCENT, VERDICT_MARGIN,
-    Verdict,
-};
+pub use model_comparison::{ASSESSED_BINS, ASSESSED_READINGS, Candidate, LeftOut};
+pub use noise::{ErrorSizes, Noise, NoiseTests, TEST_LEVEL};
 pub use physics::{Physics, Reflectance};
-pub use resampling::{RESAMPLES, Spread};
+pub use refit::{Reliance, Without, most_influential, rests_on};
 pub use uncertainty::Uncertainty;
+pub use verdict::{NOT_PREDICTED_PERCENT, VERDICT_MARGIN, Verdict};
 pub use warning::Warning;
 
+pub(crate) use uncertainty::Tests;
 pub(crate) use assessment::assess_observed;
 pub(crate) use model_comparison::sufficient_model;
 pub(crate) use warning::warnings;

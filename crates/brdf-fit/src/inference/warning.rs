@@ -6,13 +6,13 @@ use std::fmt;
 use brdf_core::AnyBrdf;
 use serde::{Deserialize, Serialize};
 
-use super::covariance::Noise;
+use super::deviations::Quality;
 use super::estimate::{Estimate, Knowledge};
-use super::model_comparison::NOT_DESCRIBED_PERCENT;
+use super::noise::Noise;
 use super::physics::violation_deg;
 use super::uncertainty::Uncertainty;
-use crate::fit::{Fit, FitOptions, FitProblem};
-use crate::format::counted;
+use crate::fit::{Fit, FitOptions, FitProblem, Solution};
+use crate::format::{counted, two_digits};
 use crate::model::{Model, Parameter};
 use crate::progress::{Cancelled, Progress};
 use crate::scan::{Measurement, Measurements, RefractiveIndex};
@@ -40,7 +40,7 @@ const REVERSED_GAIN: f64 = 0.5;
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Warning {
-    /// E is above [`NOT_DESCRIBED_PERCENT`]: the model does not describe the sample.
+    /// The rms error is above 30 %: the model does not describe the sample.
     NotDescribed {
         /// E in percent.
         e_percent: f64,
@@ -106,20 +106,39 @@ pub enum Warning {
     },
 }
 
+impl Warning {
+    /// The kind of the warning in a word, as in JSON and CSV.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::NotDescribed { .. } => "not-described",
+            Self::ThetaReversed { .. } => "turned-round",
+            Self::ReflectanceAboveOne { .. } => "reflectance-above-one",
+            Self::NotDetermined { .. } => "not-determined",
+            Self::LargerThanStatedErrors { .. } => "larger-than-stated-errors",
+            Self::FewIncidences { .. } => "few-incidences",
+            Self::NegativeReadings { .. } => "negative-readings",
+            Self::ZeroWeightReadings { .. } => "weightless-readings",
+            Self::RepeatedReadings { .. } => "repeated-readings",
+            Self::NoMirrorReadings { .. } => "no-mirror-readings",
+            Self::IterationLimit { .. } => "iteration-limit",
+        }
+    }
+}
+
 /// The warning as a clause. How to change the reading of the file is for the program to add.
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotDescribed { e_percent } => write!(
                 f,
-                "the model does not describe this sample: E = {e_percent:.3} % at its optimum, a \
-                 root mean square deviation of {:.0} % of the readings",
+                "the model does not describe this sample: its rms error is {:.0} % of the rms reading",
                 10.0 * e_percent.sqrt()
             ),
             Self::ThetaReversed { e_percent } => write!(
                 f,
-                "with the sign of theta reversed E would be {e_percent:.3} %: the file seems to \
-                 count the forward side positive"
+                "with the sign of theta reversed the rms error would be {} %: the file seems to count \
+                 the forward side positive",
+                two_digits(10.0 * e_percent.sqrt())
             ),
             Self::ReflectanceAboveOne { psi_deg } => write!(
                 f,
@@ -145,8 +164,8 @@ impl fmt::Display for Warning {
             Self::LargerThanStatedErrors { reduced_chi_square } => write!(
                 f,
                 "the residuals are {:.1} times as large as the standard deviations of the readings \
-                 (root mean square): the model deviates from them by more than noise, and the \
-                 intervals are too short",
+                 (root mean square): the model deviates from them by more than noise, which the \
+                 intervals allow for",
                 reduced_chi_square.sqrt()
             ),
             Self::FewIncidences { count } => write!(
@@ -186,20 +205,21 @@ impl fmt::Display for Warning {
 /// with reversed signs of theta is reported.
 pub(crate) fn warnings(
     measurements: &Measurements,
-    fit: &Fit,
+    fitted: &Solution,
     uncertainty: &Uncertainty,
     progress: &Progress<'_>,
 ) -> Result<Vec<Warning>, Cancelled> {
+    let fit = &fitted.fit;
     let mut warnings = Vec::new();
-    if fit.e_percent > NOT_DESCRIBED_PERCENT {
+    if Quality::of_rms(fit.rms_percent()) == Quality::Poor {
         warnings.push(Warning::NotDescribed {
             e_percent: fit.e_percent,
         });
     }
-    warnings.extend(theta_reversed(measurements, fit, progress)?);
+    warnings.extend(theta_reversed(measurements, fitted, progress)?);
     warnings.extend(uncertainty.estimates.iter().filter_map(not_determined));
     warnings.extend(larger_than_stated_errors(uncertainty));
-    warnings.extend(reflectance_above_one(fit));
+    warnings.extend(reflectance_above_one(fit, uncertainty));
     warnings.extend(iteration_limits(fit));
     warnings.extend(about_readings(measurements, fit));
     Ok(warnings)
@@ -232,9 +252,10 @@ fn larger_than_stated_errors(uncertainty: &Uncertainty) -> Option<Warning> {
 
 fn theta_reversed(
     measurements: &Measurements,
-    fit: &Fit,
+    fitted: &Solution,
     progress: &Progress<'_>,
 ) -> Result<Option<Warning>, Cancelled> {
+    let fit = &fitted.fit;
     // The format of a table defines the sides.
     if fit.e_percent <= FITS_WELL_PERCENT || measurements.is_table() {
         return Ok(None);
@@ -251,11 +272,13 @@ fn theta_reversed(
         return Ok(None);
     };
     let reversed = lowest_e_percent(&reversed, fit, progress)?;
+    let is_better = |than: f64| reversed.is_some_and(|reversed| reversed < REVERSED_GAIN * than);
+    if !is_better(fit.e_percent) {
+        return Ok(None);
+    }
     let as_read = lowest_e_percent(measurements, fit, progress)?;
-    let better = reversed
-        .zip(as_read)
-        .filter(|(reversed, as_read)| *reversed < REVERSED_GAIN * as_read.min(fit.e_percent));
-    Ok(better.map(|(e_percent, _)| Warning::ThetaReversed { e_percent }))
+    let better = reversed.filter(|_| as_read.is_some_and(is_better));
+    Ok(better.map(|e_percent| Warning::ThetaReversed { e_percent }))
 }
 
 /// The lowest E of the paper's model at the n of a fit, in percent, to the grid of the search. It
@@ -278,7 +301,12 @@ fn lowest_e_percent(
     Ok(Some(100.0 * lowest.error))
 }
 
-fn reflectance_above_one(fit: &Fit) -> Option<Warning> {
+/// The reflectance of a fit all of whose parameters are determined: that of an arbitrary value means
+/// nothing.
+fn reflectance_above_one(fit: &Fit, uncertainty: &Uncertainty) -> Option<Warning> {
+    if !uncertainty.estimates.iter().all(Estimate::is_determined) {
+        return None;
+    }
     let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;
     let psi_deg = violation_deg(&brdf)?;
     // Beyond the limit of the condition rho(psi) <= 1 the fit is free to exceed 1.
@@ -361,6 +389,7 @@ fn direction(reading: &Measurement) -> [i64; 3] {
 mod tests {
     use super::*;
     use crate::fit::{FitOptions, fit_scan};
+    use crate::inference::Tests;
     use crate::inference::test_scans::{self, options};
     use crate::progress::{NoObserver, Phase};
 
@@ -370,14 +399,45 @@ mod tests {
         change(&mut options);
         let progress = Progress::new(&NoObserver, Phase::Uncertainty);
         let fitted = fit_scan(&scan, &options, &progress).unwrap();
-        let uncertainty = Uncertainty::of_fit(&fitted, &progress).unwrap();
-        warnings(&scan, &fitted.fit, &uncertainty, &progress).unwrap()
+        let uncertainty =
+            Uncertainty::of_fit(&scan, &fitted, Tests::Omitted, &progress).unwrap();
+        warnings(&scan, &fitted, &uncertainty, &progress).unwrap()
     }
 
     /// A scan with 2 % of ripple, which the model fits well and no parameter follows.
     fn rippled(k2: f64, kd: f64, k1: f64) -> Vec<Measurement> {
         let scan = test_scans::rippled([k2, kd, k1], 1.5, 0.02);
         scan.readings().to_vec()
+    }
+
+    #[test]
+    fn the_kind_of_a_warning_is_that_of_its_json() {
+        let all = [
+            Warning::NotDescribed { e_percent: 20.0 },
+            Warning::ThetaReversed { e_percent: 1.0 },
+            Warning::ReflectanceAboveOne { psi_deg: 80.0 },
+            Warning::NotDetermined {
+                parameter: Parameter::K1,
+                reason: String::new(),
+                from: None,
+                to: None,
+            },
+            Warning::LargerThanStatedErrors {
+                reduced_chi_square: 9.0,
+            },
+            Warning::FewIncidences { count: 2 },
+            Warning::NegativeReadings { count: 1 },
+            Warning::ZeroWeightReadings { count: 1 },
+            Warning::RepeatedReadings { count: 1 },
+            Warning::NoMirrorReadings {
+                smallest_tilt_deg: 5.0,
+            },
+            Warning::IterationLimit { stage: 1 },
+        ];
+        for warning in all {
+            let json = serde_json::to_value(&warning).unwrap();
+            assert_eq!(json["kind"], warning.kind());
+        }
     }
 
     #[test]

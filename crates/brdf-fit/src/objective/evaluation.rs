@@ -174,7 +174,7 @@ mod tests {
 
     use super::*;
     use crate::objective::ObjectiveError;
-    use crate::objective::weights::Weights;
+    use crate::objective::weights::{AssumedErrors, Weights};
     use crate::scan::Measurement;
     use crate::scan::Measurements;
     use crate::scan::synthetic::scan;
@@ -211,7 +211,7 @@ mod tests {
         let brdf = ThreeParameterBrdf::new(parameters, N).unwrap();
         let weights = Weights {
             g1: "0=1,60=1,70=0.5".parse().unwrap(),
-            by_sigma: true,
+            errors: AssumedErrors::Stated,
             ..Weights::default()
         };
         let (mut above, mut below) = (0.0, 0.0);
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(zero_weight.unwrap_err(), ObjectiveError::AllZero);
         readings[3].sigma = None;
         let by_sigma = Weights {
-            by_sigma: true,
+            errors: AssumedErrors::Stated,
             ..Weights::default()
         };
         assert_eq!(

@@ -15,4 +15,5 @@ pub(crate) mod weights;
 pub use error::ObjectiveError;
 pub use evaluation::NormalEquations;
 pub(crate) use evaluation::{ProfileSums, ROUNDING};
+pub(crate) use rows::Segment;
 pub use rows::{IncidenceError, MOST_FOLDS, Objective};

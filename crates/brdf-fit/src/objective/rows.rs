@@ -94,6 +94,13 @@ pub(crate) struct Segment {
     pub(super) zero_weight: usize,
 }
 
+impl Segment {
+    /// The number of readings that influence E.
+    pub(crate) fn used(&self) -> usize {
+        self.readings - self.zero_weight
+    }
+}
+
 /// E of one incidence: numerator and denominator of eq. (5) are summed over its readings only.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct IncidenceError {
@@ -221,6 +228,13 @@ impl Objective {
     /// The columns y and a.
     pub(crate) fn fixed_columns(&self) -> (&[f64], &[f64]) {
         (&self.measured, &self.diffuse)
+    }
+
+    /// The root of the weight of each row in E, as a factor on f_r cos theta; 0 for a reading of zero
+    /// weight.
+    pub(crate) fn row_weights(&self) -> Vec<f64> {
+        let rows = self.diffuse.iter().zip(&self.angles);
+        rows.map(|(a, angles)| PI * a / angles.cos_theta).collect()
     }
 
     /// The refractive index of the precomputed Fresnel factors.

@@ -1,7 +1,10 @@
 //! The objective over some of its rows, or with other weights.
 
+use brdf_core::ModelParameters;
+
 use super::error::ObjectiveError;
 use super::rows::{Objective, Segment};
+use super::weights::RELATIVE_FLOOR;
 
 impl Objective {
     /// The objective over the incidences whose index `keep` accepts.
@@ -76,5 +79,29 @@ impl Objective {
             }
         }
         objective.normalised()
+    }
+
+    /// The objective with the weights of relative errors, 1/(m^2 + (0.02 rms)^2): m is f_r cos theta of
+    /// the model at the given parameters, or of the readings.
+    ///
+    /// # Errors
+    ///
+    /// E is not defined with these weights.
+    pub(crate) fn relative(&self, at: Option<&ModelParameters>) -> Result<Self, ObjectiveError> {
+        let weights = self.row_weights();
+        let rows = at.map(|at| self.residuals(at));
+        let used = || weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+        let reading = |i: usize| self.fixed_columns().0[i] / weights[i];
+        let squares: f64 = used().map(|(i, _)| reading(i).powi(2)).sum();
+        let floor = RELATIVE_FLOOR * (squares / used().count().max(1) as f64).sqrt();
+        self.reweighted(|i| {
+            if weights[i] == 0.0 {
+                return 0.0;
+            }
+            let value = rows
+                .as_ref()
+                .map_or_else(|| reading(i), |rows| (rows[i].0 + rows[i].1) / weights[i]);
+            (value * value + floor * floor).recip()
+        })
     }
 }

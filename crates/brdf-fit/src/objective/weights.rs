@@ -65,27 +65,89 @@ impl FromStr for AngleWeight {
     }
 }
 
-/// The weights of the readings in E: g = g1(psi) g2(theta), multiplied by 1/sigma^2 or by the solid
-/// angle if requested, and 0 for masked readings.
+/// The floor of relative errors, as a fraction of the rms of f_r cos theta.
+pub const RELATIVE_FLOOR: f64 = 0.02;
+
+/// The errors that the weights assume.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum AssumedErrors {
+    /// Constant in f_r cos theta: the E of the paper.
+    #[default]
+    Constant,
+    /// As the scan states them: weights 1/sigma^2.
+    Stated,
+    /// In proportion to the model, with a floor: weights 1/(m^2 + (0.02 rms)^2), m being the model's
+    /// f_r cos theta and the rms that of the readings'. They follow the fit of constant errors.
+    Relative,
+}
+
+/// The weights of the readings in E: g = g1(psi) g2(theta), multiplied by those of the assumed errors
+/// and by the solid angle if requested, and 0 for masked readings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "StoredWeights", into = "StoredWeights")]
 pub struct Weights {
     /// g1 of eq. (5), over the incidence angle psi.
     pub g1: AngleWeight,
     /// g2 of eq. (5), over the signed view angle theta.
     pub g2: AngleWeight,
-    /// Multiply by 1/sigma^2 of each reading.
-    #[serde(default)]
-    pub by_sigma: bool,
+    /// The errors that the weights assume (in JSON `by_sigma` and `relative`).
+    pub errors: AssumedErrors,
     /// Multiply by the solid angle that each reading represents: see [`solid_angles`].
-    #[serde(default)]
     pub by_solid_angle: bool,
     /// Mask readings closer to the source direction than this angle, in radians (in JSON in degrees):
     /// the detector blocks the light there, or scatters it.
-    #[serde(default, rename = "mask_source_deg", with = "as_degrees")]
     pub mask_source: f64,
     /// Mask readings closer to the mirror direction than this angle, in radians (in JSON in degrees).
-    #[serde(default, rename = "mask_mirror_deg", with = "as_degrees")]
     pub mask_mirror: f64,
+}
+
+/// The weights in the JSON of a fit.
+#[derive(Serialize, Deserialize)]
+struct StoredWeights {
+    g1: AngleWeight,
+    g2: AngleWeight,
+    #[serde(default)]
+    by_sigma: bool,
+    #[serde(default)]
+    relative: bool,
+    #[serde(default)]
+    by_solid_angle: bool,
+    #[serde(default, rename = "mask_source_deg", with = "as_degrees")]
+    mask_source: f64,
+    #[serde(default, rename = "mask_mirror_deg", with = "as_degrees")]
+    mask_mirror: f64,
+}
+
+impl From<Weights> for StoredWeights {
+    fn from(weights: Weights) -> Self {
+        Self {
+            g1: weights.g1,
+            g2: weights.g2,
+            by_sigma: weights.errors == AssumedErrors::Stated,
+            relative: weights.errors == AssumedErrors::Relative,
+            by_solid_angle: weights.by_solid_angle,
+            mask_source: weights.mask_source,
+            mask_mirror: weights.mask_mirror,
+        }
+    }
+}
+
+impl From<StoredWeights> for Weights {
+    fn from(stored: StoredWeights) -> Self {
+        let errors = match (stored.by_sigma, stored.relative) {
+            (true, _) => AssumedErrors::Stated,
+            (false, true) => AssumedErrors::Relative,
+            (false, false) => AssumedErrors::Constant,
+        };
+        Self {
+            g1: stored.g1,
+            g2: stored.g2,
+            errors,
+            by_solid_angle: stored.by_solid_angle,
+            mask_source: stored.mask_source,
+            mask_mirror: stored.mask_mirror,
+        }
+    }
 }
 
 /// The weights in use, such as `g1(psi), 1/sigma^2`; empty if all weights are 1.
@@ -98,7 +160,8 @@ impl fmt::Display for Weights {
         let all = [
             word(!self.g1.points_deg.is_empty(), "g1(psi)"),
             word(!self.g2.points_deg.is_empty(), "g2(theta)"),
-            word(self.by_sigma, "1/sigma^2"),
+            word(self.errors == AssumedErrors::Stated, "1/sigma^2"),
+            word(self.errors == AssumedErrors::Relative, "1/model^2"),
             word(self.by_solid_angle, "solid angle"),
             mask(self.mask_source, "source"),
             mask(self.mask_mirror, "mirror direction"),
@@ -134,7 +197,7 @@ impl Weights {
         }
         let theta = reading.in_plane_theta().unwrap_or(reading.theta);
         let by_angle = self.g1.at(reading.psi) * self.g2.at(theta);
-        if self.by_sigma {
+        if self.errors == AssumedErrors::Stated {
             reading.sigma.map(|sigma| by_angle / (sigma * sigma))
         } else {
             Some(by_angle)
@@ -298,7 +361,7 @@ mod tests {
             sigma: None,
         };
         let by_sigma = Weights {
-            by_sigma: true,
+            errors: AssumedErrors::Stated,
             ..Weights::default()
         };
         assert_eq!(Weights::default().of(&reading), Some(1.0));

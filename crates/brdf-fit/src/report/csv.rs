@@ -9,11 +9,15 @@ use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 use super::run::Report;
 use crate::fit::Fit;
 use crate::format::in_degrees;
+use crate::inference::{Estimate, Quality, Warning};
+use crate::model::Parameter;
 use crate::read::LazyScan;
 use crate::scan::Measurements;
 
-/// The columns of [`write_parameters`]. `stage1_e_percent` is E over the readings of stage 1.
-pub const PARAMETER_COLUMNS: [&str; 12] = [
+/// The columns of [`write_parameters`]. `stage1_e_percent` is E over the readings of stage 1, `_low` and
+/// `_high` are the ends of an interval of 95 %, `rms_percent` is sqrt(E), and `warnings` the kinds of
+/// warnings, separated by semicolons. A value that does not exist is an empty cell.
+pub const PARAMETER_COLUMNS: [&str; 21] = [
     "file",
     "wavelength_um",
     "n",
@@ -26,11 +30,20 @@ pub const PARAMETER_COLUMNS: [&str; 12] = [
     "stage1_k1",
     "stage1_e_percent",
     "status",
+    "k2_low",
+    "k2_high",
+    "kd_low",
+    "kd_high",
+    "k1_low",
+    "k1_high",
+    "rms_percent",
+    "quality",
+    "warnings",
 ];
 
 /// The columns of [`write_models`]. n is the fitted refractive index if the model fits it, p the
-/// exponent of the facet distribution.
-pub const MODEL_COLUMNS: [&str; 14] = [
+/// exponent of the facet distribution; the columns after it are those of [`PARAMETER_COLUMNS`].
+pub const MODEL_COLUMNS: [&str; 27] = [
     "file",
     "wavelength_um",
     "n",
@@ -45,6 +58,19 @@ pub const MODEL_COLUMNS: [&str; 14] = [
     "stage1_e_percent",
     "status",
     "p",
+    "k2_low",
+    "k2_high",
+    "kd_low",
+    "kd_high",
+    "k1_low",
+    "k1_high",
+    "n_low",
+    "n_high",
+    "p_low",
+    "p_high",
+    "rms_percent",
+    "quality",
+    "warnings",
 ];
 
 /// Writes the parameters of fits, one line for each fit. The columns are [`PARAMETER_COLUMNS`].
@@ -56,7 +82,9 @@ pub fn write_parameters(reports: &[Report], writer: impl io::Write) -> io::Resul
     let mut csv = csv::Writer::from_writer(writer);
     csv.write_record(PARAMETER_COLUMNS)?;
     for report in reports {
-        csv.write_record(record(report))?;
+        let mut record = record(report);
+        record.extend(inferred(report, &Parameter::ALL[..3]));
+        csv.write_record(record)?;
     }
     csv.flush()
 }
@@ -75,6 +103,7 @@ pub fn write_models(reports: &[Report], writer: impl io::Write) -> io::Result<()
         let mut record = record(report);
         record.insert(3, report.model.to_string());
         record.push(number(fit.map(|fit| fit.p)));
+        record.extend(inferred(report, &Parameter::ALL));
         csv.write_record(record)?;
     }
     csv.flush()
@@ -104,6 +133,24 @@ fn record(report: &Report) -> Vec<String> {
     record.push(number(stage1.map(|stage| stage.e_percent.own)));
     record.push(report.status());
     record
+}
+
+/// The intervals of some parameters, the error, and the warnings.
+fn inferred(report: &Report, parameters: &[Parameter]) -> Vec<String> {
+    let mut cells = Vec::new();
+    for &parameter in parameters {
+        let uncertainty = report.uncertainty.as_ref();
+        let estimate = uncertainty.and_then(|uncertainty| uncertainty.estimate(parameter));
+        let interval = estimate.map(Estimate::interval_95);
+        cells.push(number(interval.and_then(|interval| interval.from)));
+        cells.push(number(interval.and_then(|interval| interval.to)));
+    }
+    let rms = report.fit.as_ref().map(Fit::rms_percent);
+    cells.push(number(rms));
+    cells.push(rms.map_or("", |rms| Quality::of_rms(rms).word()).to_owned());
+    let kinds: Vec<&str> = report.warnings.iter().map(Warning::kind).collect();
+    cells.push(kinds.join(";"));
+    cells
 }
 
 /// The columns of [`write_curves`].

@@ -78,9 +78,9 @@ fn section(report: &Report, pictures: &[Picture<'_>]) -> String {
     if let Some(fit) = &report.fit {
         text += &stages::brief(fit).html();
         if let Some(uncertainty) = &report.uncertainty {
-            text += &parameters::brief(uncertainty, assessment).html();
+            text += &parameters::table(uncertainty, assessment).html();
         }
-        text += &incidences::one_below_another(fit, assessment).html();
+        text += &incidences::one_below_another(fit, report.deviations.as_ref(), assessment).html();
     }
     if let Some(assessment) = assessment {
         text += &models(assessment).html();
@@ -123,11 +123,7 @@ fn introduction(report: &Report) -> String {
 }
 
 fn models(assessment: &Assessment) -> Table {
-    let format = models::ModelTableFormat {
-        percent: |e| format!("{e:.3}"),
-        aicc_decimals: 1,
-    };
-    let mut table = models::model_table(assessment, &format);
+    let mut table = models::model_table(assessment);
     let missing = assessment.left_out.iter();
     table.notes.extend(
         missing.map(|missing| format!("{} was not fitted: {}.", missing.model, missing.reason)),
@@ -136,12 +132,7 @@ fn models(assessment: &Assessment) -> Table {
     table
         .notes
         .extend(verdict.map(|verdict| format!("Verdict: {verdict}.")));
-    table.notes.push(
-        "Predicted is E of each incidence, predicted by a fit to the other incidences. AICc is the \
-         difference from the best model of the table and assumes independent, normal errors of equal \
-         size. The errors of a scan rarely are, so the verdict is based on the prediction."
-            .to_owned(),
-    );
+    table.notes.push(models::legend());
     table
 }
 

@@ -9,6 +9,7 @@ mod models;
 mod parameters;
 mod run;
 mod stages;
+mod summary;
 mod table;
 mod text;
 
@@ -21,7 +22,8 @@ pub use csv::{
 pub(crate) use document::without_position;
 pub use document::{Document, DocumentError};
 pub use html::{Picture, html};
-pub use models::{ModelTableFormat, model_table};
+pub use models::model_table;
 pub use run::{Depth, ModelChoice, Report};
+pub use summary::summary;
 pub use table::{Alignment, Column, Row, Table};
 pub use text::Section;

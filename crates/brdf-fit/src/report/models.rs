@@ -1,24 +1,15 @@
 //! The compared models as a table.
 
 use super::table::{Column, Row, Table};
-use crate::format::digits;
+use crate::format::two_digits;
 use crate::inference::{Assessment, Candidate};
 use crate::model::Parameter;
 
-/// How the numbers of [`model_table`] are written.
-#[derive(Debug, Clone, Copy)]
-pub struct ModelTableFormat {
-    /// E in percent.
-    pub percent: fn(f64) -> String,
-    /// Decimals of AICc.
-    pub aicc_decimals: usize,
-}
-
 /// A table of the models of an assessment, with a column for each parameter.
-pub fn model_table(assessment: &Assessment, format: &ModelTableFormat) -> Table {
+pub fn model_table(assessment: &Assessment) -> Table {
     let row = |candidate: &Candidate| {
         let mut cells = vec![candidate.model.to_string()];
-        cells.extend(errors(candidate, format));
+        cells.extend(errors(candidate));
         cells.extend(Parameter::ALL.map(|parameter| {
             let mut estimates = candidate.estimates.iter();
             let estimate = estimates.find(|estimate| estimate.parameter == parameter);
@@ -28,7 +19,7 @@ pub fn model_table(assessment: &Assessment, format: &ModelTableFormat) -> Table 
         Row::new(cells)
     };
     let mut columns = vec![Column::left("model", 11)];
-    columns.extend(["E %", "predicted %", "AICc"].map(|name| Column::right(name, 13)));
+    columns.extend(ERRORS.map(|name| Column::right(name, 13)));
     columns.extend(Parameter::ALL.map(|parameter| Column::right(parameter.to_string(), 26)));
     columns.push(Column::left("energy", 0));
     Table {
@@ -41,13 +32,9 @@ pub fn model_table(assessment: &Assessment, format: &ModelTableFormat) -> Table 
 
 /// A table of the models of an assessment, with their parameters in one column.
 pub(super) fn compact(assessment: &Assessment) -> Table {
-    let format = ModelTableFormat {
-        percent: digits,
-        aicc_decimals: 1,
-    };
     let fitted = |candidate: &Candidate| {
         let mut cells = vec![candidate.model.to_string()];
-        cells.extend(errors(candidate, &format));
+        cells.extend(errors(candidate));
         let estimates = candidate.estimates.iter();
         let parameters: Vec<String> = estimates
             .map(|estimate| format!("{} {estimate}", estimate.parameter))
@@ -65,9 +52,9 @@ pub(super) fn compact(assessment: &Assessment) -> Table {
         caption: "Models".to_owned(),
         columns: vec![
             Column::left("model", 11),
-            Column::right("E %", 13),
-            Column::right("predicted %", 13),
-            Column::right("AICc", 10),
+            Column::right(ERRORS[0], 8),
+            Column::right(ERRORS[1], 15),
+            Column::right(ERRORS[2], 12),
             Column::left("parameters (95 % interval)", 0),
         ],
         rows,
@@ -75,17 +62,28 @@ pub(super) fn compact(assessment: &Assessment) -> Table {
     }
 }
 
-/// E, E of the cross-validation, and AICc.
-fn errors(candidate: &Candidate, format: &ModelTableFormat) -> [String; 3] {
+/// The columns of [`errors`].
+const ERRORS: [&str; 3] = ["rms %", "predicted rms %", "predicts %"];
+
+/// The rms error of the fit, that of the prediction of each incidence by the others, and the typical
+/// relative error of that prediction by fits of relative errors.
+fn errors(candidate: &Candidate) -> [String; 3] {
     let dash = || "-".to_owned();
-    let aicc = |aicc: f64| format!("{aicc:+.*}", format.aicc_decimals);
+    let rms = |e_percent: f64| two_digits(10.0 * e_percent.sqrt());
+    let relative = candidate.relative_prediction.as_ref();
+    let predicts = relative.filter(|prediction| !prediction.incidences.is_empty());
     [
-        (format.percent)(candidate.e_percent),
-        candidate
-            .predicted_e_percent
-            .map_or_else(dash, format.percent),
-        candidate.aicc_above_best.map_or_else(dash, aicc),
+        rms(candidate.e_percent),
+        candidate.predicted_e_percent.map_or_else(dash, rms),
+        predicts.map_or_else(dash, |prediction| two_digits(prediction.within_percent())),
     ]
+}
+
+/// What the columns of errors are, as sentences.
+pub(super) fn legend() -> String {
+    "rms: sqrt(E); predicted rms: of each incidence by a fit of E to the others; predicts: the typical \
+     relative error of that, by fits of relative errors."
+        .to_owned()
 }
 
 /// From which incidence the model violates energy conservation, if it does.

@@ -3,9 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fit, FitError, FitOptions, fit_scan};
-use crate::inference::Uncertainty;
-use crate::inference::{Assessment, assess_observed, sufficient_model};
-use crate::inference::{Warning, warnings};
+use crate::inference::{Assessment, Deviations, Uncertainty, Warning};
+use crate::inference::{Tests, assess_observed, sufficient_model, warnings};
 use crate::model::Model;
 use crate::progress::{NoObserver, Observer, Phase, Progress};
 use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
@@ -63,6 +62,9 @@ pub struct Report {
     /// Standard errors and confidence intervals; `None` if no parameter was fitted.
     #[serde(default)]
     pub uncertainty: Option<Uncertainty>,
+    /// The relative errors of the fit; `None` at [`Depth::Fit`].
+    #[serde(default)]
+    pub deviations: Option<Deviations>,
     /// Cross-validation, physical plausibility and model comparison; `None` at [`Depth::Fit`].
     #[serde(default)]
     pub assessment: Option<Assessment>,
@@ -136,6 +138,7 @@ impl Report {
             fit: None,
             error: None,
             uncertainty: None,
+            deviations: None,
             assessment: None,
             rejected: Vec::new(),
         };
@@ -180,11 +183,17 @@ impl Report {
         }
         let fit = self.fit.insert(fitted.fit.clone());
         let progress = Progress::begin(observer, Phase::Uncertainty)?;
-        let uncertainty = Uncertainty::of_fit(&fitted, &progress)?;
+        let tests = if depth > Depth::Fit {
+            Tests::Made
+        } else {
+            Tests::Omitted
+        };
+        let uncertainty = Uncertainty::of_fit(measurements, &fitted, tests, &progress)?;
         let fitted_readings = options.fitted_readings(measurements);
-        self.warnings = warnings(&fitted_readings, fit, &uncertainty, &progress)?;
+        self.warnings = warnings(&fitted_readings, &fitted, &uncertainty, &progress)?;
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
         if depth > Depth::Fit {
+            self.deviations = Deviations::of(&fitted_readings, fit);
             let compare = depth == Depth::Compared;
             self.assessment = Some(assess_observed(measurements, fit, compare, observer)?);
         }

@@ -8,12 +8,14 @@ use super::run::Report;
 use super::{incidences, models, parameters, stages};
 use crate::fit::Fit;
 use crate::fit::robust::REJECTED;
-use crate::format::{counted, digits, in_degrees, shortest};
-use crate::inference::{Assessment, Physics};
-use crate::inference::{Noise, Uncertainty};
+use crate::format::{counted, digits, in_degrees, rounded, shortest, two_digits};
+use crate::inference::{
+    Assessment, Deviations, ErrorSizes, Knowledge, Noise, Physics, Quality, Uncertainty,
+    Warning,
+};
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::objective::MOST_FOLDS;
-use crate::scan::{Convention, Measurement};
+use crate::scan::{Measurement, Side};
 
 /// A section of the text of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -25,38 +27,76 @@ pub struct Section {
 }
 
 impl Report {
-    /// The report as text: a heading and the [sections](Self::sections).
+    /// The report as text: a heading, and the sections that answer what was read, how well the model
+    /// describes it, what the parameters are and what they rest on.
     pub fn text(&self) -> String {
-        let sections = self.sections().into_iter().map(|section| section.text);
+        self.explained_text(false, &ToString::to_string)
+    }
+
+    /// [`text`](Self::text), with the stages, the incidences, the compared models and whatever else is
+    /// known.
+    pub fn detailed_text(&self) -> String {
+        self.explained_text(true, &ToString::to_string)
+    }
+
+    /// [`detailed_text`](Self::detailed_text) or [`text`](Self::text), with other sentences for the
+    /// warnings.
+    pub(crate) fn explained_text(
+        &self,
+        detailed: bool,
+        explain: &dyn Fn(&Warning) -> String,
+    ) -> String {
+        let mut sections = self.brief_sections(explain);
+        if let Some(fit) = self.fit.as_ref().filter(|_| detailed) {
+            sections.extend(not_empty(self.detailed_sections(fit)));
+        }
+        let sections = sections.into_iter().map(|section| section.text);
         std::iter::once(self.heading()).chain(sections).collect()
     }
 
-    /// The sections of [`text`](Self::text) below its heading, in their order, without empty ones.
+    /// The sections of [`detailed_text`](Self::detailed_text) below its heading, in their order,
+    /// without empty ones.
     pub fn sections(&self) -> Vec<Section> {
-        let mut sections = if let Some(fit) = &self.fit {
-            self.fit_sections(fit)
-        } else {
-            let error = self.error.as_deref().unwrap_or("no fit");
-            vec![("error", format!("  error: {error}\n"))]
-        };
-        sections.push(("warnings", self.warning_lines()));
-        let sections = sections.into_iter();
+        let mut sections = self.brief_sections(&ToString::to_string);
+        if let Some(fit) = &self.fit {
+            sections.extend(not_empty(self.detailed_sections(fit)));
+        }
         sections
-            .filter(|(_, text)| !text.is_empty())
-            .map(|(title, text)| Section { title, text })
-            .collect()
     }
 
-    fn fit_sections(&self, fit: &Fit) -> Vec<(&'static str, String)> {
+    fn brief_sections(&self, explain: &dyn Fn(&Warning) -> String) -> Vec<Section> {
+        let assessment = self.assessment.as_ref();
+        let mut sections = vec![("reading", self.reading_lines())];
+        if let Some(fit) = &self.fit {
+            sections.push(("quality", self.quality_lines(fit)));
+        } else {
+            let error = self.error.as_deref().unwrap_or("no fit");
+            sections.push(("error", labelled("error", error)));
+        }
+        if let Some(uncertainty) = &self.uncertainty {
+            sections.push(("parameters", parameters_section(uncertainty, assessment)));
+            sections.push(("noise", noise_lines(uncertainty)));
+        }
+        if let (Some(fit), Some(assessment)) = (&self.fit, assessment) {
+            sections.push(("verdict", verdict_lines(fit, assessment)));
+        }
+        let warnings = self.warnings.iter();
+        let warnings = warnings.map(|warning| labelled("warning", &explain(warning)));
+        sections.push(("warnings", warnings.collect()));
+        not_empty(sections)
+    }
+
+    fn detailed_sections(&self, fit: &Fit) -> Vec<(&'static str, String)> {
         let assessment = self.assessment.as_ref();
         let check = global_check_line(fit) + &options_lines(fit, &self.rejected);
+        let incidences = incidences_section(fit, self.deviations.as_ref(), assessment);
         let mut sections = vec![
             ("stages", stages_section(fit)),
-            ("incidences", incidences_section(fit, assessment)),
+            ("incidences", incidences),
             ("global check and options", check),
         ];
         if let Some(uncertainty) = &self.uncertainty {
-            sections.push(("parameters", parameters_section(uncertainty, assessment)));
+            sections.push(("correlations", correlation_line(uncertainty)));
         }
         if let Some(assessment) = assessment {
             let models = cross_validation_lines(fit, assessment) + &models_section(assessment);
@@ -66,17 +106,51 @@ impl Report {
         sections
     }
 
-    fn warning_lines(&self) -> String {
+    /// How the file was read.
+    fn reading_lines(&self) -> String {
         let mut text = String::new();
-        for warning in &self.warnings {
-            let _ = writeln!(text, "  warning: {warning}");
-        }
         for conversion in &self.conversions {
-            let _ = writeln!(text, "  read: {conversion}");
+            text += &labelled("read", conversion);
         }
         if !self.ignored_columns.is_empty() {
-            let columns = self.ignored_columns.join(", ");
-            let _ = writeln!(text, "  unused columns: {columns}");
+            text += &labelled("not used", &self.ignored_columns.join(", "));
+        }
+        text
+    }
+
+    /// The error of the fit.
+    fn quality_lines(&self, fit: &Fit) -> String {
+        let quality = Quality::of_rms(fit.rms_percent());
+        let mut text = labelled("quality", &format!("{}: {quality}", quality.word()));
+        text += &labelled(
+            "error",
+            &format!(
+                "rms {} % of the rms of f_r cos theta (sqrt(E); E = {} % by eq. (5))",
+                two_digits(fit.rms_percent()),
+                shortest_percent(fit.e_percent)
+            ),
+        );
+        if let Some(deviations) = &self.deviations {
+            text += &labelled(
+                "",
+                &format!(
+                    "half of the readings are within {} %, 90 % within {} % of the measured f_r",
+                    two_digits(deviations.median_percent),
+                    two_digits(deviations.ninety_percent)
+                ),
+            );
+        }
+        if let Some(relative) = &fit.relative {
+            text += &labelled(
+                "",
+                &format!(
+                    "fitted with weights of relative errors; E is least, rms {} %, at k2 {}, kD {}, k1 {}",
+                    two_digits(10.0 * relative.least_squares_e_percent.sqrt()),
+                    digits(relative.least_squares.k2),
+                    digits(relative.least_squares.kd),
+                    digits(relative.least_squares.k1)
+                ),
+            );
         }
         text
     }
@@ -103,12 +177,59 @@ impl Report {
             }
         }
         text += &counted(self.readings, "reading");
-        if self.convention != Convention::default() {
-            let _ = write!(text, ", read with {}", self.convention);
+        let _ = write!(text, " of f_r in 1/sr, theta positive {}", side(self.convention.theta_positive));
+        if self.convention.phi_zero == Side::Forward {
+            let _ = write!(text, ", phi zero {}", side(Side::Forward));
         }
         text.push('\n');
         text
     }
+}
+
+fn side(side: Side) -> &'static str {
+    match side {
+        Side::Source => "on the side of the source",
+        Side::Forward => "on the side of the mirror direction",
+    }
+}
+
+/// The width of the text, in characters.
+const WIDTH: usize = 100;
+
+/// The width of a label and the indent of what it labels.
+const INDENT: usize = 12;
+
+/// A sentence behind a label, wrapped to the width of the text.
+fn labelled(label: &str, sentence: &str) -> String {
+    let mut text = format!("  {label:<width$}", width = INDENT - 2);
+    let mut column = INDENT;
+    for (i, word) in sentence.split(' ').enumerate() {
+        if i > 0 && column + 1 + word.chars().count() > WIDTH {
+            let _ = write!(text, "\n{:INDENT$}", "");
+            column = INDENT;
+        } else if i > 0 {
+            text.push(' ');
+            column += 1;
+        }
+        text += word;
+        column += word.chars().count();
+    }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
+}
+
+fn not_empty(sections: Vec<(&'static str, String)>) -> Vec<Section> {
+    sections
+        .into_iter()
+        .filter(|(_, text)| !text.is_empty())
+        .map(|(title, text)| Section { title, text })
+        .collect()
+}
+
+/// E in percent with three significant digits.
+fn shortest_percent(e_percent: f64) -> String {
+    rounded(e_percent, 0.05 * e_percent)
 }
 
 /// `n = 1.5`, or `n = 1.11776 (fitted)`.
@@ -172,9 +293,13 @@ fn bound_lines(fit: &Fit) -> String {
     text
 }
 
-fn incidences_section(fit: &Fit, assessment: Option<&Assessment>) -> String {
+fn incidences_section(
+    fit: &Fit,
+    deviations: Option<&Deviations>,
+    assessment: Option<&Assessment>,
+) -> String {
     let mut text = String::new();
-    for table in incidences::side_by_side(fit, assessment) {
+    for table in incidences::side_by_side(fit, deviations, assessment) {
         text.push('\n');
         text += &table.text();
     }
@@ -255,28 +380,179 @@ fn options_lines(fit: &Fit, rejected: &[Measurement]) -> String {
     text
 }
 
+/// The parameters, the errors that their intervals come from, and what they rest on.
 fn parameters_section(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> String {
-    let table = parameters::detailed(uncertainty, assessment).text();
-    let noise = if uncertainty.covered.is_empty() {
-        String::new()
-    } else {
-        noise_line(uncertainty)
-    };
-    format!("\n{table}{noise}")
+    let mut text = format!("\n{}", parameters::table(uncertainty, assessment).text());
+    if let Some(reason) = no_interval(uncertainty) {
+        text += &labelled("", reason);
+    }
+    if let (Some(errors), false) = (&uncertainty.errors, uncertainty.covariance.is_empty()) {
+        text += &labelled("intervals", &sources(errors, uncertainty));
+    }
+    for reliance in assessment.map_or_else(Vec::new, |a| parameters::reliance(uncertainty, a)) {
+        text += &labelled("", &reliance);
+    }
+    if let Some(n) = uncertainty.estimate(Parameter::N) {
+        text += &labelled(
+            "",
+            &format!(
+                "n = {} is an effective index: it stands in for what the model lacks (the binders of \
+                 paints have 1.4 to 1.7)",
+                digits(n.value)
+            ),
+        );
+    }
+    text
 }
 
-/// Where the standard errors come from, and the correlations of the parameters.
-fn noise_line(uncertainty: &Uncertainty) -> String {
-    let degrees = counted(uncertainty.degrees_of_freedom, "degree");
-    let noise = match uncertainty.noise {
-        Noise::Residuals => {
-            format!("standard errors from the residuals, {degrees} of freedom")
+fn no_interval(uncertainty: &Uncertainty) -> Option<&str> {
+    let mut estimates = uncertainty.estimates.iter();
+    estimates.find_map(|estimate| match &estimate.knowledge {
+        Knowledge::NoInterval { reason } => Some(reason.as_str()),
+        _ => None,
+    })
+}
+
+/// The errors that the intervals come from.
+fn sources(errors: &ErrorSizes, uncertainty: &Uncertainty) -> String {
+    let mut parts = Vec::new();
+    let mut part = |percent: f64, of: &str| {
+        if percent >= 0.05 {
+            parts.push(format!("{} % {of}", two_digits(percent)));
         }
-        Noise::Given { reduced_chi_square } => format!(
-            "standard errors from the standard deviations of the readings; reduced chi^2 \
-             {reduced_chi_square:.2}, {degrees} of freedom"
-        ),
     };
+    part(errors.proportional_percent, "per reading");
+    part(errors.patch_percent, "per stretch of 20 deg");
+    part(errors.incidence_percent.unwrap_or(0.0), "per incidence");
+    part(errors.constant_percent, "of the rms reading, constant");
+    part(errors.counting_percent, "like counting statistics at the rms reading");
+    if let Some(factor) = errors.stated_factor {
+        let factor = two_digits(factor);
+        parts.insert(0, format!("{factor} times the stated standard deviations"));
+    }
+    let errors_of = if parts.is_empty() {
+        "rounding".to_owned()
+    } else {
+        parts.join(", ")
+    };
+    let alone = errors.incidence_percent.is_none();
+    format!(
+        "from errors of {errors_of}, estimated from the residuals ({}){}",
+        degrees(uncertainty),
+        if alone {
+            "; one incidence: an error of its gain is not included"
+        } else {
+            ""
+        }
+    )
+}
+
+/// The degrees of freedom of the intervals: `t, 10 to 41 degrees of freedom`.
+fn degrees(uncertainty: &Uncertainty) -> String {
+    let estimates = uncertainty.estimates.iter();
+    let all = estimates.filter_map(|estimate| match estimate.knowledge {
+        Knowledge::Determined {
+            degrees_of_freedom, ..
+        } => degrees_of_freedom,
+        _ => None,
+    });
+    let (least, most) = all.fold((f64::INFINITY, 0.0_f64), |(least, most), degrees| {
+        (least.min(degrees), most.max(degrees))
+    });
+    if least > most {
+        return "no parameter is determined".to_owned();
+    }
+    let (least, most) = (format!("{least:.0}"), format!("{most:.0}"));
+    if least == most {
+        format!("t, {least} degrees of freedom")
+    } else {
+        format!("t, {least} to {most} degrees of freedom")
+    }
+}
+
+/// Whether the residuals contradict independent errors of constant size.
+fn noise_lines(uncertainty: &Uncertainty) -> String {
+    if let Noise::Given { reduced_chi_square } = uncertainty.noise {
+        let chi = format!("reduced chi^2 of the stated standard deviations: {reduced_chi_square:.2}");
+        return labelled("noise", &chi);
+    }
+    let (Some(tests), Some(errors)) = (&uncertainty.tests, &uncertainty.errors) else {
+        return String::new();
+    };
+    let mut all = Vec::new();
+    let share = two_digits;
+    if tests.grows() {
+        all.push(format!(
+            "the errors grow with the reading ({}): {} % of it, not constant",
+            significance(tests.growth_p),
+            share(errors.proportional_percent)
+        ));
+    }
+    let neighbours = tests.patch_p.filter(|_| tests.neighbours_err_together()).map(|p| {
+        format!(
+            "neighbouring readings err together, by {} % ({}): the model misses the shape, or the \
+             instrument's errors are correlated",
+            share(errors.patch_percent),
+            significance(p)
+        )
+    });
+    let of_incidence = errors.incidence_percent.unwrap_or(0.0);
+    let incidences = tests.incidence_p.filter(|_| tests.incidences_differ()).map(|p| {
+        format!(
+            "whole incidences lie high or low together, by {} % ({}): gain or alignment of each \
+             incidence, or the model",
+            share(of_incidence),
+            significance(p)
+        )
+    });
+    if of_incidence > errors.patch_percent {
+        all.extend(incidences.into_iter().chain(neighbours));
+    } else {
+        all.extend(neighbours.into_iter().chain(incidences));
+    }
+    if all.is_empty() {
+        all.push(
+            "nothing contradicts independent errors of constant size in f_r cos theta (three tests, \
+             1 %)"
+                .to_owned(),
+        );
+    }
+    let labels = std::iter::once("noise").chain(std::iter::repeat(""));
+    labels
+        .zip(&all)
+        .map(|(label, sentence)| labelled(label, sentence))
+        .collect()
+}
+
+fn significance(p: f64) -> String {
+    if p < 0.001 {
+        "p < 0.001".to_owned()
+    } else {
+        format!("p = {p:.3}")
+    }
+}
+
+/// The verdict on the models.
+fn verdict_lines(fit: &Fit, assessment: &Assessment) -> String {
+    let sentence = match &assessment.verdict {
+        Some(verdict) => {
+            let others = assessment
+                .models
+                .iter()
+                .filter(|candidate| {
+                    Some(candidate.model) != verdict.model && candidate.model == fit.model()
+                })
+                .filter_map(|candidate| candidate.relative_prediction.as_ref())
+                .map(|own| format!("; {}, within {} %", fit.model(), two_digits(own.within_percent())));
+            format!("{verdict}{}", others.collect::<String>())
+        }
+        None => "none: too few incidences to predict one from the others".to_owned(),
+    };
+    labelled("verdict", &sentence)
+}
+
+/// The correlations of the parameters.
+fn correlation_line(uncertainty: &Uncertainty) -> String {
     let correlations = uncertainty.correlations();
     let mut pairs = Vec::new();
     for (i, first) in uncertainty.covered.iter().enumerate() {
@@ -287,9 +563,9 @@ fn noise_line(uncertainty: &Uncertainty) -> String {
         }
     }
     if pairs.is_empty() {
-        return format!("  {noise}\n");
+        return String::new();
     }
-    format!("  {noise}; correlations {}\n", pairs.join(", "))
+    format!("  correlations: {}\n", pairs.join(", "))
 }
 
 /// The scope of the assessment, and the error of the cross-validation.
@@ -323,12 +599,13 @@ fn cross_validation_lines(fit: &Fit, assessment: &Assessment) -> String {
             "\n  the {incidences} incidences are left out several at a time, in {MOST_FOLDS} folds"
         );
     }
+    let rms = |e_percent: f64| two_digits(10.0 * e_percent.sqrt());
     let _ = match &assessment.cross_validation {
         Some(prediction) => writeln!(
             text,
-            "\n  leave-one-incidence-out cross-validation: E = {} % (fit to all incidences: {} %)",
-            digits(prediction.e_percent),
-            digits(assessment.e_percent)
+            "\n  leave-one-incidence-out cross-validation: rms {} % (fit to all incidences: {} %)",
+            rms(prediction.e_percent),
+            rms(assessment.e_percent)
         ),
         None if incidences < 2 => writeln!(
             text,
@@ -342,18 +619,10 @@ fn cross_validation_lines(fit: &Fit, assessment: &Assessment) -> String {
     text
 }
 
-/// The compared models with the verdict.
+/// The compared models.
 fn models_section(assessment: &Assessment) -> String {
     let mut table = models::compact(assessment);
-    table.notes.push(
-        "(predicted: E of each incidence, predicted by a fit to the other incidences; AICc: \
-         difference from the best model, for independent normal errors)"
-            .to_owned(),
-    );
-    let verdict = assessment.verdict.as_ref();
-    table
-        .notes
-        .extend(verdict.map(|verdict| format!("verdict: {verdict}")));
+    table.notes.push(models::legend());
     format!("\n{}", table.text())
 }
 

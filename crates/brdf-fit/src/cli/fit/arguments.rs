@@ -49,7 +49,7 @@ pub(in crate::cli) struct Arguments {
     ///
     /// three is the model of the paper; with +n the refractive index is fitted too. auto is the
     /// smallest of the first six models that predicts each incidence angle, when it is left out of
-    /// the fit, about as well as the best of the six does.
+    /// the fit, about as well as the best of the six does; three where there are too few incidences.
     #[arg(long, value_name = "MODEL", value_parser = parse_model)]
     pub(super) model: Option<ModelArgument>,
 
@@ -160,6 +160,10 @@ pub(in crate::cli) struct Arguments {
     /// a goniometer would measure in the plane of incidence.
     #[arg(long, value_name = "FOLDER")]
     pub(super) plot: Option<PathBuf>,
+
+    /// Print the stages, the incidences, the compared models and the reflectance as well
+    #[arg(long, short)]
+    pub(super) verbose: bool,
 
     /// Print the parameters as CSV, one line for each fit, instead of the tables
     #[arg(long)]

@@ -9,7 +9,7 @@ use crate::cli::stream;
 use crate::output;
 use crate::plot::write_folder;
 use crate::read::LazyScan;
-use crate::report::{Document, Report, write_curves, write_models, write_parameters};
+use crate::report::{Document, Report, summary, write_curves, write_models, write_parameters};
 
 /// Writes the files and prints. A failure of one output does not prevent the others: all failures
 /// are returned.
@@ -49,9 +49,12 @@ fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
     if !arguments.params_only {
         let texts: Vec<String> = reports
             .iter()
-            .map(|report| explain::report(report.text(), &report.warnings))
+            .map(|report| report.explained_text(arguments.verbose, &explain::warning))
             .collect();
         buffer.extend(texts.join("\n").bytes());
+        if reports.len() > 1 {
+            buffer.extend(format!("\n{}", summary(reports).text()).bytes());
+        }
     } else if arguments.compare || arguments.model.is_some() {
         write_models(reports, &mut buffer)?;
     } else {

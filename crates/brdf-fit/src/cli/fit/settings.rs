@@ -8,7 +8,7 @@ use crate::cli::failure::Failure;
 use crate::cli::stream::{self, Named, StreamError};
 use crate::fit::FitOptions;
 use crate::model::Model;
-use crate::objective::weights::Weights;
+use crate::objective::weights::{AssumedErrors, Weights};
 use crate::plot::PAGE;
 use crate::read::ReadOptions;
 use crate::report::{Depth, Document, DocumentError, ModelChoice};
@@ -27,7 +27,11 @@ impl Arguments {
             weights: Weights {
                 g1: self.g1.clone().unwrap_or_default(),
                 g2: self.g2.clone().unwrap_or_default(),
-                by_sigma: matches!(self.weights, ReadingWeights::Sigma),
+                errors: match self.weights {
+                    ReadingWeights::Sigma => AssumedErrors::Stated,
+                    ReadingWeights::Relative => AssumedErrors::Relative,
+                    ReadingWeights::None | ReadingWeights::SolidAngle => AssumedErrors::Constant,
+                },
                 by_solid_angle: matches!(self.weights, ReadingWeights::SolidAngle),
                 mask_source: self.mask_source.to_radians(),
                 mask_mirror: self.mask_mirror.to_radians(),

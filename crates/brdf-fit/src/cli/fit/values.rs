@@ -18,8 +18,11 @@ pub(super) enum ModelArgument {
 pub(super) enum ReadingWeights {
     /// The same for all readings
     None,
-    /// 1/sigma^2 by the column sigma_per_sr, which then also determines the errors of the parameters
+    /// 1/sigma^2 by the column sigma_per_sr, from which the intervals then start
     Sigma,
+    /// 1/m^2 with f_r cos theta of the model, m, and a floor of 2 % of the rms reading: for errors in
+    /// proportion to the reading
+    Relative,
     /// The part of the hemisphere that each reading represents
     SolidAngle,
 }

@@ -8,7 +8,7 @@ use super::timing::{self, median};
 use super::trials::{Trial, reference_options, trials};
 use crate::fit::FitOptions;
 use crate::fit::{FitError, FitProblem, Solution, fit_scan};
-use crate::inference::{Estimate, Uncertainty};
+use crate::inference::{Estimate, Tests, Uncertainty};
 use crate::model::Parameter;
 use crate::objective::{Objective, ROUNDING};
 use crate::progress::{Cancelled, NoObserver, Phase, Progress};
@@ -44,7 +44,7 @@ pub fn fit_tradeoff(
 fn compare(scan: &Measurements, options: &FitOptions) -> Result<FitTradeoff, TradeoffError> {
     let options = reference_options(options);
     let fitted = fit_scan(scan, &options, &NoObserver)?;
-    let reference = Reference::of(&fitted).map_err(FitError::from)?;
+    let reference = Reference::of(scan, &fitted).map_err(FitError::from)?;
     // E as that of the reference, without the weights of a robust loss.
     let fit = &fitted.fit;
     let least_squares = FitOptions {
@@ -69,10 +69,10 @@ fn compare(scan: &Measurements, options: &FitOptions) -> Result<FitTradeoff, Tra
 }
 
 impl Reference {
-    fn of(fitted: &Solution) -> Result<Self, Cancelled> {
+    fn of(scan: &Measurements, fitted: &Solution) -> Result<Self, Cancelled> {
         let fit = &fitted.fit;
         let progress = Progress::new(&NoObserver, Phase::Uncertainty);
-        let uncertainty = Uncertainty::of_fit(fitted, &progress)?;
+        let uncertainty = Uncertainty::of_fit(scan, fitted, Tests::Omitted, &progress)?;
         // The standard errors of a fit without residuals are those of rounding.
         let has_errors = fit.e_percent > 100.0 * ROUNDING;
         let standard_error = |&parameter: &Parameter| OfParameter {

@@ -24,14 +24,15 @@
 //!
 //! An [`Observer`] receives each iteration of a fit, and may cancel it.
 //!
-//! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr. Degrees are used in files
-//! and on screens only, with `_deg` in the name.
+//! Angles are in radians, wavelengths in micrometres, the BRDF in 1/sr; a value in degrees has
+//! `_deg` in its name.
 //!
 //! # Features
 //!
-//! Without default features the crate reads and fits and nothing else. `plot` adds figures, `export`
-//! forms for other programs, `tradeoff` measured trade-offs; `cli` (the default) enables all three
-//! and adds the programs `brdf` and `fit`.
+//! Without default features the crate has no programs, figures, exports or trade-offs: it reads,
+//! fits, assesses and reports. `plot` adds figures, `export` forms for other programs, `tradeoff`
+//! measured trade-offs; `cli` (the default) enables all three and adds the programs `brdf` and
+//! `fit`.
 
 #[cfg(feature = "cli")]
 pub mod cli;

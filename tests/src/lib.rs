@@ -6,6 +6,7 @@
     reason = "tests panic, that is how they fail"
 )]
 
+pub mod coverage;
 pub mod data;
 pub mod picture;
 mod python;
@@ -134,6 +135,11 @@ pub fn generator(seed: u64) -> StdRng {
 /// A number from the normal distribution of mean 0 and standard deviation 1.
 pub fn normal(generator: &mut StdRng) -> f64 {
     generator.sample(StandardNormal)
+}
+
+/// A number between two others.
+pub fn uniform(generator: &mut StdRng, from: f64, to: f64) -> f64 {
+    generator.random_range(from..to)
 }
 
 /// A number between two others, uniform in its logarithm.

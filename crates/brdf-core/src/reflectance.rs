@@ -61,6 +61,9 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     ///
     /// A reflectance above 1 violates the conservation of energy.
     pub fn energy_violation_angle(&self) -> Option<f64> {
+        if self.reflectance_bound() < 1.0 {
+            return None;
+        }
         let excess = |psi: f64| {
             self.hemispherical_reflectance(psi, ENERGY_CHECK_TOLERANCE)
                 .is_ok_and(|rho| rho > 1.0)
@@ -81,6 +84,17 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             }
         }
         Some(above)
+    }
+
+    /// A bound that no hemispherical reflectance exceeds: kD + 2 R(0)/R_n(0), with the facet
+    /// reflectance R(0) that k2 implies and that of the refractive index, R_n(0).
+    ///
+    /// In the integral over the facet normals, D G cos gamma / cos psi, the shadowing is at most
+    /// 2 cos alpha cos psi / cos gamma, the projected areas D cos alpha add up to 1, and the Fresnel
+    /// factor is at most 1/R_n(0).
+    fn reflectance_bound(&self) -> f64 {
+        let facets = self.implied_facet_reflectance() / self.fresnel().normal_reflectance();
+        self.parameters().kd + 2.0 * facets
     }
 
     /// The facet reflectance at normal incidence that k2 = (pi/4) f(0) R(0) implies, dimensionless:
@@ -356,5 +370,31 @@ mod tests {
             brdf.hemispherical_reflectance(1.6, 1e-6),
             Err(GeometryError::Incidence(1.6))
         );
+    }
+
+    #[test]
+    fn no_reflectance_exceeds_its_bound() {
+        for family in Family::ALL {
+            for k1 in [0.01, 0.2, 1.0, 3.0] {
+                for n in [1.05, 1.5, 3.0] {
+                    let at = ModelParameters {
+                        k2: 0.1,
+                        kd: 0.1,
+                        k1,
+                        n,
+                        p: 1.3,
+                    };
+                    let brdf = AnyBrdf::new(family, &at).unwrap();
+                    let bound = 0.1
+                        + 2.0 * brdf.implied_facet_reflectance()
+                            / Dielectric::new(n).normal_reflectance();
+                    for psi_deg in [0.0_f64, 40.0, 70.0, 85.0, 89.0] {
+                        let rho = brdf.hemispherical_reflectance(psi_deg.to_radians(), 1e-3);
+                        let rho = rho.unwrap();
+                        assert!(rho <= bound, "{family:?} {k1} {n} {psi_deg}: {rho} {bound}");
+                    }
+                }
+            }
+        }
     }
 }

@@ -65,17 +65,15 @@ pub use fit::{
 };
 pub use format::ParseError;
 pub use inference::{
-    ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Deviations, ErrorSizes,
-    Estimate, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise, NoiseTests, Physics,
-    PredictedIncidence, Quality, Reflectance, RelativePrediction, Reliance, TEST_LEVEL, Uncertainty,
-    VERDICT_MARGIN, Verdict, Warning, Without, assess, most_influential, rests_on,
+    ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Deviations,
+    ErrorSizes, Estimate, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise, NoiseTests,
+    Physics, PredictedIncidence, Quality, Reflectance, RelativePrediction, Reliance, TEST_LEVEL,
+    Uncertainty, VERDICT_MARGIN, Verdict, Warning, Without, assess, most_influential, rests_on,
 };
 pub use model::{
     DEFAULT_N, FixedError, FixedParameters, K1_RANGE, Model, N_RANGE, Parameter, ReducedModel,
 };
-pub use objective::weights::{
-    AngleWeight, AssumedErrors, RELATIVE_FLOOR, Weights, solid_angles,
-};
+pub use objective::weights::{AngleWeight, AssumedErrors, RELATIVE_FLOOR, Weights, solid_angles};
 pub use objective::{IncidenceError, MOST_FOLDS, NormalEquations, Objective, ObjectiveError};
 pub use progress::{Cancelled, NoObserver, Observer, Phase, Step};
 pub use read::{LazyScan, ReadError, ReadOptions};

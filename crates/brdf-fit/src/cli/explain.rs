@@ -143,9 +143,8 @@ mod tests {
     }
 
     #[test]
-    fn the_warnings_of_a_report_name_the_option() {
-        let turned = Warning::ThetaReversed { e_percent: 2.0 };
-        let text = report(format!("  warning: {turned}\n"), &[turned]);
+    fn a_warning_about_the_sides_names_the_option() {
+        let text = warning(&Warning::ThetaReversed { e_percent: 2.0 });
         assert!(text.contains("--theta-positive forward"), "{text}");
     }
 }

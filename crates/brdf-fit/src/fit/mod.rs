@@ -11,8 +11,8 @@ mod global_check;
 pub(crate) mod grid_search;
 mod options;
 mod problem;
-mod result;
 pub(crate) mod relative;
+mod result;
 pub(crate) mod robust;
 pub(crate) mod start;
 

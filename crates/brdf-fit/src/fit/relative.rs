@@ -87,7 +87,10 @@ mod tests {
             (relative.parameters.kd, truth.kd),
             (relative.parameters.k1, truth.k1),
         ] {
-            assert!((found - expected).abs() < 1e-6 * expected, "{found} {expected}");
+            assert!(
+                (found - expected).abs() < 1e-6 * expected,
+                "{found} {expected}"
+            );
         }
         let mut readings = exact.readings().to_vec();
         for (i, reading) in readings.iter_mut().enumerate() {

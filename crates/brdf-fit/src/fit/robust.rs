@@ -78,6 +78,21 @@ impl Loss {
         }
     }
 
+    /// The mean of [`slope`](Self::slope) over normal residuals of the given standard deviation, in
+    /// standard deviations of the loss.
+    pub(crate) fn expected_slope(self, deviation: f64) -> f64 {
+        // Strips of equal width up to four standard deviations.
+        const STRIPS: u32 = 160;
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for i in 0..STRIPS {
+            let z = 4.0 * (f64::from(i) + 0.5) / f64::from(STRIPS);
+            let weight = (-0.5 * z * z).exp();
+            sum += weight * self.slope(deviation * z);
+            weights += weight;
+        }
+        sum / weights
+    }
+
     /// The weight of a reading, from its residual in standard deviations.
     fn weight(self, deviations: f64) -> f64 {
         let x = deviations.abs();
@@ -124,6 +139,10 @@ pub(crate) struct RobustWeights {
     pub(crate) objective: Objective,
     /// The weight of the loss of each row.
     pub(crate) weights: Vec<f64>,
+    /// The loss.
+    pub(crate) loss: Loss,
+    /// The standard deviation of the loss, [`RobustFit::scale`].
+    pub(crate) scale: f64,
     /// The mean derivative of weight times residual by the residual.
     pub(crate) mean_slope: f64,
 }
@@ -176,6 +195,8 @@ pub(crate) fn fit_robustly(
     let weights = RobustWeights {
         objective: objective.clone(),
         weights: deviations.iter().map(|&d| loss.weight(d)).collect(),
+        loss,
+        scale,
         mean_slope: if mean_slope > 0.0 { mean_slope } else { 1.0 },
     };
     Ok((at, weighted, robust, weights))
@@ -229,8 +250,8 @@ fn mean(deviations: &[f64], of: impl Fn(f64) -> f64) -> f64 {
 fn variance_factor(loss: Loss, deviations: &[f64]) -> f64 {
     let influence = mean(deviations, |d| (loss.weight(d) * d).powi(2));
     let slope = mean(deviations, |d| loss.slope(d));
-    let weighted = mean(deviations, |d| loss.weight(d) * d * d)
-        / mean(deviations, |d| loss.weight(d));
+    let weighted =
+        mean(deviations, |d| loss.weight(d) * d * d) / mean(deviations, |d| loss.weight(d));
     let factor = influence / (slope * slope) / weighted;
     if factor.is_finite() {
         factor.max(1.0)
@@ -309,5 +330,15 @@ mod tests {
             }
             assert!(fit.e_percent > robust.least_squares_e_percent);
         }
+    }
+
+    #[test]
+    fn the_expected_slope_of_huber_is_the_share_of_small_residuals() {
+        // P(|z| < 1.345) of a standard normal variable, and of one twice as wide.
+        for (deviation, expected) in [(1.0, 0.8214), (2.0, 0.4987)] {
+            let found = Loss::Huber.expected_slope(deviation);
+            assert!((found - expected).abs() < 0.01, "{found}");
+        }
+        assert_eq!(Loss::Huber.expected_slope(0.0), 1.0);
     }
 }

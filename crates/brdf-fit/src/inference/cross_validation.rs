@@ -106,7 +106,11 @@ impl PredictedIncidence {
 impl RelativePrediction {
     /// S, the mean over incidences of the logarithm of their errors.
     pub fn score(&self) -> f64 {
-        let sum: f64 = self.incidences.iter().map(PredictedIncidence::log_of_error).sum();
+        let sum: f64 = self
+            .incidences
+            .iter()
+            .map(PredictedIncidence::log_of_error)
+            .sum();
         sum / self.incidences.len() as f64
     }
 
@@ -154,10 +158,12 @@ pub(super) fn relative_prediction(
         let Some(at) = fit else { continue };
         let (log_error, not_positive) = log_error(objective, segment, &at);
         prediction.not_positive += not_positive;
-        prediction.incidences.extend(log_error.map(|error| PredictedIncidence {
-            psi_deg: in_degrees(segment.psi),
-            log_error: Some(error).filter(|error| error.is_finite()),
-        }));
+        prediction
+            .incidences
+            .extend(log_error.map(|error| PredictedIncidence {
+                psi_deg: in_degrees(segment.psi),
+                log_error: Some(error).filter(|error| error.is_finite()),
+            }));
     }
     Ok(prediction)
 }
@@ -172,7 +178,11 @@ fn log_error(
     let (mut squares, mut count, mut not_positive) = (0.0, 0_usize, 0);
     let (_, diffuse) = objective.fixed_columns();
     let weights = &diffuse[segment.rows.clone()];
-    for ((r, y), weight) in objective.residuals_of(at, segment.rows.clone()).iter().zip(weights) {
+    for ((r, y), weight) in objective
+        .residuals_of(at, segment.rows.clone())
+        .iter()
+        .zip(weights)
+    {
         if *weight == 0.0 {
             continue;
         }

@@ -41,7 +41,7 @@ pub use uncertainty::Uncertainty;
 pub use verdict::{NOT_PREDICTED_PERCENT, VERDICT_MARGIN, Verdict};
 pub use warning::Warning;
 
-pub(crate) use uncertainty::Tests;
 pub(crate) use assessment::assess_observed;
 pub(crate) use model_comparison::sufficient_model;
+pub(crate) use uncertainty::Tests;
 pub(crate) use warning::warnings;

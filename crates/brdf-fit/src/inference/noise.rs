@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 use super::terms::{Grid, Readings, Source};
-use super::variance_components::{Common, Components, Estimated, Terms, common_errors, estimate};
+use super::variance_components::{Common, Components, INDEPENDENT, Terms, common_errors, estimate};
 
 /// The significance level of each test.
 pub const TEST_LEVEL: f64 = 0.01;
@@ -46,7 +46,11 @@ impl ErrorSizes {
     pub(super) fn new(components: &Components, source: Source, full_incidences: usize) -> Self {
         let percent = |variance: f64| 100.0 * variance.sqrt();
         let [first, counting, proportional] = components.white;
-        let constant = if source == Source::Residuals { first } else { 0.0 };
+        let constant = if source == Source::Residuals {
+            first
+        } else {
+            0.0
+        };
         Self {
             constant_percent: percent(constant),
             counting_percent: percent(counting),
@@ -92,13 +96,7 @@ impl NoiseTests {
             return None;
         }
         let (terms, _) = readings.sorted(Grid::Centred);
-        let independent = Estimated {
-            white: [true, false, true],
-            patch: false,
-            gain: false,
-            least_first: 0.0,
-        };
-        let components = estimate(&terms, independent);
+        let components = estimate(&terms, INDEPENDENT);
         let patches = common_errors(&terms, &components);
         let incidences = merged(&terms, &patches);
         Some(Self {
@@ -195,15 +193,19 @@ mod tests {
 
     #[test]
     fn equal_values_share_the_mean_of_their_ranks() {
-        assert_eq!(ranks([3.0, 1.0, 3.0, 2.0].into_iter()), [3.5, 1.0, 3.5, 2.0]);
+        assert_eq!(
+            ranks([3.0, 1.0, 3.0, 2.0].into_iter()),
+            [3.5, 1.0, 3.5, 2.0]
+        );
     }
 
     #[test]
     fn perfectly_correlated_values_are_significant_and_shuffled_ones_are_not() {
         let grows: Vec<(f64, f64)> = (0..30).map(|i| (f64::from(i), f64::from(i * i))).collect();
         assert!(growth(&grows) < 1e-6);
-        let shuffled: Vec<(f64, f64)> =
-            (0..30).map(|i| (f64::from(i), f64::from(i * 7 % 30))).collect();
+        let shuffled: Vec<(f64, f64)> = (0..30)
+            .map(|i| (f64::from(i), f64::from(i * 7 % 30)))
+            .collect();
         assert!(growth(&shuffled) > 0.1);
         assert_eq!(growth(&[(1.0, 2.0); 5]), 1.0);
     }

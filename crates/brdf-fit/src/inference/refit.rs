@@ -80,7 +80,12 @@ impl<'a> Refitter<'a> {
         let lowest = self.search.profile(times).lowest().parameters;
         let mut minima = Vec::with_capacity(2);
         for start in [lowest, self.at] {
-            minima.extend(unless_cancelled(polish(&others, start, free, self.progress))?);
+            minima.extend(unless_cancelled(polish(
+                &others,
+                start,
+                free,
+                self.progress,
+            ))?);
         }
         let by_error =
             |a: &ModelParameters, b: &ModelParameters| others.error(a).total_cmp(&others.error(b));
@@ -99,10 +104,7 @@ pub struct Without {
 
 /// The fits without each incidence, where the others suffice; empty where incidences are left out
 /// several at a time.
-pub(super) fn sensitivity(
-    objective: &Objective,
-    fits: &[Option<ModelParameters>],
-) -> Vec<Without> {
+pub(super) fn sensitivity(objective: &Objective, fits: &[Option<ModelParameters>]) -> Vec<Without> {
     if fits.len() < objective.segments().len() {
         return Vec::new();
     }
@@ -146,7 +148,11 @@ pub fn rests_on(uncertainty: &Uncertainty, sensitivity: &[Without]) -> Vec<Relia
             without: parameter.of(&furthest.parameters),
         })
     };
-    uncertainty.estimates.iter().filter_map(of_estimate).collect()
+    uncertainty
+        .estimates
+        .iter()
+        .filter_map(of_estimate)
+        .collect()
 }
 
 /// The incidence whose removal moves a parameter by most standard errors.

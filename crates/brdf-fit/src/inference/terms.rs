@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use brdf_core::ModelParameters;
 use nalgebra::DMatrix;
 
-use super::variance_components::{Patch, Terms, WHITE};
+use super::variance_components::{INDEPENDENT, Patch, Term, Terms, WHITE, estimate};
 use crate::fit::Solution;
 use crate::model::Parameter;
 use crate::scan::{Measurement, Measurements};
@@ -20,6 +20,9 @@ const PATCH: f64 = 20.0 * PI / 180.0;
 
 /// The width of a patch in azimuth, outside the plane of incidence, in radians: 30 deg.
 const AZIMUTH_PATCH: f64 = 30.0 * PI / 180.0;
+
+/// The least expected slope of a robust loss.
+const LEAST_SLOPE: f64 = 0.05;
 
 /// The two ways in which the views of an incidence are divided into patches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,12 +71,14 @@ pub(super) struct Readings<const P: usize> {
 
 #[derive(Debug, Clone)]
 struct Row<const P: usize> {
-    size: f64,
-    residual: f64,
-    slopes: [f64; P],
+    term: Term<P>,
+    /// The root of the weight of the reading in E.
+    weight: f64,
+    /// w (sum w J J^T)^-1 J.
     influence: [f64; P],
-    white: [f64; WHITE],
     incidence: usize,
+    /// The row of the objective.
+    row: usize,
     view: View,
 }
 
@@ -131,75 +136,141 @@ impl<const P: usize> Readings<P> {
         parameters: [Parameter; P],
         source: Source,
     ) -> Option<Self> {
+        let mut readings = Self::unweighted(measurements, fitted, at, parameters);
+        let slopes = readings.loss_slopes(fitted);
+        let (mut matrix, mut score) = (DMatrix::zeros(P, P), [0.0; P]);
+        for (row, slope) in readings.rows.iter().zip(&slopes) {
+            let weight = row.weight * row.weight;
+            let derivatives = &row.term.slopes;
+            for c in 0..P {
+                score[c] += weight * derivatives[c] * row.term.residual;
+                for d in 0..P {
+                    matrix[(c, d)] += slope * weight * derivatives[c] * derivatives[d];
+                }
+            }
+        }
+        let bread = inverse(&matrix)?;
+        readings.bread = std::array::from_fn(|c| std::array::from_fn(|d| bread[(c, d)]));
+        readings.score = score;
+        readings.normalise(source);
+        Some(readings)
+    }
+
+    /// The readings of non-zero weight in units of f_r cos theta, without their influence.
+    fn unweighted(
+        measurements: &Measurements,
+        fitted: &Solution,
+        at: &ModelParameters,
+        parameters: [Parameter; P],
+    ) -> Self {
         let objective = fitted.without_loss();
-        let loss_weight = |i: usize| fitted.robust().map_or(1.0, |robust| robust.weights[i]);
-        let mean_slope = fitted.robust().map_or(1.0, |robust| robust.mean_slope);
         let jacobian = objective.jacobian(at, &parameters);
         let residuals = objective.residuals(at);
         let weights = objective.row_weights();
         let views = views(measurements.readings());
-        let mut rows = Vec::with_capacity(residuals.len());
-        let (mut matrix, mut score) = (DMatrix::zeros(P, P), [0.0; P]);
-        let mut weighted = Vec::with_capacity(residuals.len());
-        let (mut full_incidences, mut incidences) = (0, 0);
+        let loss_weight = |i: usize| fitted.robust().map_or(1.0, |robust| robust.weights[i]);
+        let mut readings = Self {
+            rms: 0.0,
+            bread: [[0.0; P]; P],
+            score: [0.0; P],
+            rows: Vec::with_capacity(residuals.len()),
+            incidences: 0,
+            full_incidences: 0,
+        };
         for segment in objective.segments() {
-            let before = rows.len();
+            let before = readings.rows.len();
             for i in segment.rows.clone() {
-                let (scale, damping) = (weights[i], loss_weight(i));
-                if scale == 0.0 || damping == 0.0 {
+                let (weight, damping) = (weights[i], loss_weight(i));
+                if weight == 0.0 || damping == 0.0 {
                     continue;
                 }
-                let reading = objective.readings()[i];
-                let slopes: [f64; P] = std::array::from_fn(|c| jacobian[(i, c)] / scale);
-                let residual = -residuals[i].0 / scale * damping;
-                let weight = scale * scale;
-                for c in 0..P {
-                    score[c] += weight * slopes[c] * residual;
-                    for d in 0..P {
-                        matrix[(c, d)] += weight * slopes[c] * slopes[d];
-                    }
-                }
-                weighted.push(weight);
-                rows.push(Row {
-                    size: ((residuals[i].0 + residuals[i].1) / scale).abs(),
-                    residual,
-                    slopes,
+                let own = objective.readings()[i];
+                let reading = &measurements.readings()[own];
+                let (r, y) = residuals[i];
+                let sigma = reading.sigma.unwrap_or(0.0) * reading.theta.cos();
+                readings.rows.push(Row {
+                    term: Term {
+                        size: ((r + y) / weight).abs(),
+                        residual: -r / weight * damping,
+                        slopes: std::array::from_fn(|c| jacobian[(i, c)] / weight),
+                        white: [sigma; WHITE],
+                    },
+                    weight,
                     influence: [0.0; P],
-                    white: [measurements.readings()[reading].sigma.unwrap_or(0.0)
-                        * measurements.readings()[reading].theta.cos(); WHITE],
-                    incidence: incidences,
-                    view: views[reading],
+                    incidence: readings.incidences,
+                    row: i,
+                    view: views[own],
                 });
             }
-            if rows.len() > before {
-                incidences += 1;
-                full_incidences += usize::from(rows.len() - before >= 3);
-            }
+            let used = readings.rows.len() - before;
+            readings.incidences += usize::from(used > 0);
+            readings.full_incidences += usize::from(used >= 3);
         }
-        let bread = inverse(&matrix)? / mean_slope;
-        let bread: [[f64; P]; P] =
-            std::array::from_fn(|c| std::array::from_fn(|d| bread[(c, d)]));
-        let squares: f64 = rows.iter().map(|row| row.size * row.size).sum();
-        let rms = (squares / rows.len() as f64).sqrt();
-        for (row, weight) in rows.iter_mut().zip(weighted) {
+        readings
+    }
+
+    /// The expected derivative of a robust loss's weight times residual by the residual, of each
+    /// reading, for normal errors of the size that independent errors t1 + t3 mu^2 have here. 1 without
+    /// such a loss. The derivative at the residual itself says little: it is 0 or 1 for Huber's loss.
+    fn loss_slopes(&self, fitted: &Solution) -> Vec<f64> {
+        let Some(robust) = fitted.robust() else {
+            return vec![1.0; self.rows.len()];
+        };
+        let squares: f64 = self.rows.iter().map(|row| row.term.size.powi(2)).sum();
+        let rms = (squares / self.rows.len() as f64).sqrt();
+        let term = |row: &Row<P>| {
+            let size = row.term.size / rms;
+            Term {
+                size,
+                // Without the weight of the loss.
+                residual: row.term.residual / rms / robust.weights[row.row],
+                slopes: row.term.slopes,
+                white: [1.0, size, size * size],
+            }
+        };
+        let terms = Terms {
+            rows: self.rows.iter().map(term).collect(),
+            patches: self
+                .rows
+                .iter()
+                .enumerate()
+                .map(|(i, row)| Patch {
+                    rows: i..i + 1,
+                    incidence: row.incidence,
+                })
+                .collect(),
+            incidences: self.incidences,
+        };
+        let components = estimate(&terms, INDEPENDENT);
+        self.rows
+            .iter()
+            .zip(&terms.rows)
+            .map(|(row, term)| {
+                let variance = components.white[0] + components.white[2] * term.white[2];
+                let deviations = rms * variance.sqrt() * row.weight / robust.scale;
+                robust.loss.expected_slope(deviations).max(LEAST_SLOPE)
+            })
+            .collect()
+    }
+
+    /// Divides by the rms of the model's values, and completes the influence and the variances.
+    fn normalise(&mut self, source: Source) {
+        let squares: f64 = self.rows.iter().map(|row| row.term.size.powi(2)).sum();
+        self.rms = (squares / self.rows.len() as f64).sqrt();
+        for row in &mut self.rows {
+            let weight = row.weight * row.weight;
             row.influence = std::array::from_fn(|c| {
-                weight * (0..P).map(|d| bread[c][d] * row.slopes[d]).sum::<f64>()
+                let sum: f64 = (0..P).map(|d| self.bread[c][d] * row.term.slopes[d]).sum();
+                weight * sum
             });
-            row.size /= rms;
-            row.residual /= rms;
-            row.white = match source {
-                Source::Residuals => [1.0, row.size, row.size * row.size],
-                Source::Stated => [(row.white[0] / rms).powi(2), 0.0, 0.0],
+            let term = &mut row.term;
+            term.size /= self.rms;
+            term.residual /= self.rms;
+            term.white = match source {
+                Source::Residuals => [1.0, term.size, term.size * term.size],
+                Source::Stated => [(term.white[0] / self.rms).powi(2), 0.0, 0.0],
             };
         }
-        Some(Self {
-            rms,
-            bread,
-            score,
-            rows,
-            incidences,
-            full_incidences,
-        })
     }
 
     /// The number of readings.
@@ -210,20 +281,19 @@ impl<const P: usize> Readings<P> {
     /// The size of each reading, and its squared residual over what it is expected to be for
     /// independent errors of constant size.
     pub(super) fn sizes_and_squares(&self) -> Vec<(f64, f64)> {
-        let leverage = |row: &Row<P>| -> f64 {
-            (0..P).map(|c| row.influence[c] * row.slopes[c]).sum()
-        };
+        let leverage =
+            |row: &Row<P>| -> f64 { (0..P).map(|c| row.influence[c] * row.term.slopes[c]).sum() };
         self.rows
             .iter()
             .map(|row| {
                 let expected = (1.0 - leverage(row)).max(f64::MIN_POSITIVE);
-                (row.size, row.residual * row.residual / expected)
+                (row.term.size, row.term.residual.powi(2) / expected)
             })
             .collect()
     }
 
     /// The readings sorted by the patches of a grid, with their influence on each parameter.
-    pub(super) fn sorted(&self, grid: Grid) -> (Terms<P>, [Vec<f64>; P]) {
+    pub(super) fn sorted(&self, grid: Grid) -> (Terms<P>, Vec<[f64; P]>) {
         let mut order: Vec<(usize, (i64, i64), usize)> = self
             .rows
             .iter()
@@ -243,19 +313,13 @@ impl<const P: usize> Readings<P> {
             }
             last = Some((incidence, cell));
         }
-        let column = |of: &dyn Fn(&Row<P>) -> f64| -> Vec<f64> {
-            order.iter().map(|&(_, _, i)| of(&self.rows[i])).collect()
-        };
+        let rows = || order.iter().map(|&(_, _, i)| &self.rows[i]);
         let terms = Terms {
-            size: column(&|row| row.size),
-            residual: column(&|row| row.residual),
-            slopes: std::array::from_fn(|c| column(&|row| row.slopes[c])),
-            white: std::array::from_fn(|k| column(&|row| row.white[k])),
+            rows: rows().map(|row| row.term).collect(),
             patches,
             incidences: self.incidences,
         };
-        let influence = std::array::from_fn(|c| column(&|row| row.influence[c]));
-        (terms, influence)
+        (terms, rows().map(|row| row.influence).collect())
     }
 }
 

@@ -89,7 +89,9 @@ impl Uncertainty {
         progress.advance()?;
         let fit = &fitted.fit;
         if fit.energy.is_some_and(|energy| energy.binding) {
-            return Ok(Self::without_covariance(fit, |_| Knowledge::ConstrainedByEnergy));
+            return Ok(Self::without_covariance(fit, |_| {
+                Knowledge::ConstrainedByEnergy
+            }));
         }
         let fitted_readings = fit.options.fitted_readings(measurements);
         let share = Share::of(&fitted_readings, fitted);
@@ -190,11 +192,26 @@ struct Inference<'a> {
 macro_rules! with_array {
     ($parameters:expr, $array:ident => $body:expr) => {
         match *$parameters {
-            [a] => { let $array = [a]; $body }
-            [a, b] => { let $array = [a, b]; $body }
-            [a, b, c] => { let $array = [a, b, c]; $body }
-            [a, b, c, d] => { let $array = [a, b, c, d]; $body }
-            [a, b, c, d, e] => { let $array = [a, b, c, d, e]; $body }
+            [a] => {
+                let $array = [a];
+                $body
+            }
+            [a, b] => {
+                let $array = [a, b];
+                $body
+            }
+            [a, b, c] => {
+                let $array = [a, b, c];
+                $body
+            }
+            [a, b, c, d] => {
+                let $array = [a, b, c, d];
+                $body
+            }
+            [a, b, c, d, e] => {
+                let $array = [a, b, c, d, e];
+                $body
+            }
             _ => None,
         }
     };
@@ -219,7 +236,7 @@ impl Inference<'_> {
         let mut uncertainty = Uncertainty::without_covariance(fit, |parameter| {
             self.knowledge(parameter, &at, &covered, spread.as_ref())
         });
-        self.undetermined.release(&at, &mut uncertainty.estimates);
+        self.undetermined.release(&mut uncertainty.estimates);
         let readings = fit.readings - fit.zero_weight;
         uncertainty.degrees_of_freedom = readings.saturating_sub(covered.len()).max(1);
         if let Some(spread) = spread {
@@ -252,7 +269,8 @@ impl Inference<'_> {
         }
         let misses = spread.is_some_and(Spread::misses);
         if is_on_bound(parameter, at) {
-            let upper = (parameter == Parameter::Kd && !misses).then(|| self.upper_limit(at, covered));
+            let upper =
+                (parameter == Parameter::Kd && !misses).then(|| self.upper_limit(at, covered));
             return Knowledge::OnBound {
                 interval_95: Interval {
                     from: upper.map(|_| 0.0),
@@ -309,17 +327,23 @@ impl Inference<'_> {
             })
             .collect();
         // The covariance has the correlations of the grid that makes the intervals wider on the whole.
-        let log_width = |spread: &GridSpread<P>| -> f64 {
-            (0..P).map(|i| spread.half_width(i).ln()).sum()
-        };
+        let log_width =
+            |spread: &GridSpread<P>| -> f64 { (0..P).map(|i| spread.half_width(i).ln()).sum() };
         let ruling = &by_grid[usize::from(log_width(&by_grid[1]) > log_width(&by_grid[0]))];
         let covariance = (0..P)
             .map(|i| {
                 let entry = |j: usize| {
                     let own = ruling.covariance[i][j]
                         / (ruling.covariance[i][i] * ruling.covariance[j][j]).sqrt();
-                    widths[i].standard_error * widths[j].standard_error
-                        * if i == j { 1.0 } else if own.is_finite() { own } else { 0.0 }
+                    widths[i].standard_error
+                        * widths[j].standard_error
+                        * if i == j {
+                            1.0
+                        } else if own.is_finite() {
+                            own
+                        } else {
+                            0.0
+                        }
                 };
                 (0..P).map(entry).collect()
             })
@@ -331,7 +355,9 @@ impl Inference<'_> {
             tests: (source == Source::Residuals && self.tests == Tests::Made)
                 .then(|| NoiseTests::of(&readings))
                 .flatten(),
-            first_step: (0..P).map(|j| readings.bread[0][j] * readings.score[j]).sum::<f64>(),
+            first_step: (0..P)
+                .map(|j| readings.bread[0][j] * readings.score[j])
+                .sum::<f64>(),
             widths,
             covariance,
         })
@@ -361,8 +387,13 @@ impl Inference<'_> {
     /// E.
     fn constant_noise(&self, bread: f64, parameters: usize) -> f64 {
         let fit = &self.fitted.fit;
-        let free = (fit.readings - fit.zero_weight).saturating_sub(parameters).max(1) as f64;
-        let factor = fit.robust.as_ref().map_or(1.0, |robust| robust.variance_factor);
+        let free = (fit.readings - fit.zero_weight)
+            .saturating_sub(parameters)
+            .max(1) as f64;
+        let factor = fit
+            .robust
+            .as_ref()
+            .map_or(1.0, |robust| robust.variance_factor);
         let error = self.fitted.objective.error(&fit.at());
         let full = bread * self.fitted.robust().map_or(1.0, |robust| robust.mean_slope);
         quantile(UPPER_95, free) * (full * factor * error / free).sqrt()
@@ -514,7 +545,7 @@ impl<const P: usize> GridSpread<P> {
 /// that stand for all: independent errors average over all of them.
 fn parts<const P: usize>(
     terms: &Terms<P>,
-    influence: &[Vec<f64>; P],
+    influence: &[[f64; P]],
     components: &Components,
     share: f64,
 ) -> [[[f64; P]; P]; 3] {
@@ -530,13 +561,11 @@ fn parts<const P: usize>(
     for patch in &terms.patches {
         let mut sum = [0.0; P];
         for i in patch.rows.clone() {
-            let a: [f64; P] = std::array::from_fn(|c| influence[c][i]);
-            let variance: f64 = (0..WHITE)
-                .map(|k| components.white[k] * terms.white[k][i])
-                .sum();
-            add(&mut parts[0], variance * share, &a);
+            let (row, a) = (&terms.rows[i], &influence[i]);
+            let variance: f64 = (0..WHITE).map(|k| components.white[k] * row.white[k]).sum();
+            add(&mut parts[0], variance * share, a);
             for c in 0..P {
-                sum[c] += terms.size[i] * a[c];
+                sum[c] += row.size * a[c];
             }
         }
         add(&mut parts[1], components.patch, &sum);

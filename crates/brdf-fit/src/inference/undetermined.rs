@@ -16,11 +16,11 @@ const WIDEST_FACTOR: f64 = 10.0;
 const NARROWER: &str = "any narrower peak fits equally well: the scan does not resolve its width";
 const WIDER: &str = "any wider distribution fits equally well: the readings have no peak";
 
-/// The ends of the profile of E along a parameter.
+/// The ends of the profile of E along a parameter, each with the point next to it.
 struct Ends {
     parameter: Parameter,
-    lowest: ProfilePoint,
-    highest: ProfilePoint,
+    lowest: [ProfilePoint; 2],
+    highest: [ProfilePoint; 2],
 }
 
 /// What shows that a parameter is not determined.
@@ -41,10 +41,13 @@ impl Undetermined {
             .filter(|parameter| model.free().contains(parameter))
             .filter_map(|parameter| {
                 let points = profile.along(parameter);
+                let [.., next, last] = *points else {
+                    return None;
+                };
                 Some(Ends {
                     parameter,
-                    lowest: *points.first()?,
-                    highest: *points.last()?,
+                    lowest: [points[0], points[1]],
+                    highest: [last, next],
                 })
             })
             .collect();
@@ -72,7 +75,7 @@ impl Undetermined {
     ) -> Option<&'static str> {
         let fits = |error: f64| error - self.least < width.growth_95;
         let (below, above) = self.ends(parameter).map_or((false, false), |ends| {
-            (fits(ends.lowest.error), fits(ends.highest.error))
+            (fits(ends.lowest[0].error), fits(ends.highest[0].error))
         });
         let reaches = |scale: f64| width.half_95 > scale * WIDEST_FACTOR.ln();
         match parameter {
@@ -102,7 +105,7 @@ impl Undetermined {
 
     /// Marks k2 as not determined where k1 is not and k2 depends on it: on the flank of a narrow
     /// peak the readings determine only k2 k1^2.
-    pub(super) fn release(&self, at: &ModelParameters, estimates: &mut [Estimate]) {
+    pub(super) fn release(&self, estimates: &mut [Estimate]) {
         let width = estimates.iter().find(|e| e.parameter == Parameter::K1);
         let Some(Knowledge::NotDetermined { reason, .. }) = width.map(|e| &e.knowledge) else {
             return;
@@ -110,15 +113,25 @@ impl Undetermined {
         let Some(ends) = self.ends(Parameter::K1) else {
             return;
         };
-        let there = if reason == WIDER { &ends.highest } else { &ends.lowest };
-        let ratio = there.parameters.k2 / at.k2;
+        let [end, next] = if reason == WIDER {
+            ends.highest
+        } else {
+            ends.lowest
+        };
+        let logarithm = |of: fn(&ModelParameters) -> f64| {
+            (of(&end.parameters) / of(&next.parameters)).ln().abs()
+        };
+        let follows = logarithm(|at| at.k2) > STEEP * logarithm(|at| at.k1);
         let weight = estimates.iter_mut().find(|e| e.parameter == Parameter::K2);
-        if let Some(weight) = weight.filter(|_| !(0.5..=2.0).contains(&ratio)) {
+        if let Some(weight) = weight.filter(|_| follows) {
             weight.knowledge =
                 Knowledge::not_determined("it depends on k1, which is not determined");
         }
     }
 }
+
+/// k2 depends on k1 where it changes by more than this power of it.
+const STEEP: f64 = 0.5;
 
 const WIDE: &str = "its interval of 95 % spans more than a factor of 100";
 

@@ -75,7 +75,11 @@ impl fmt::Display for Verdict {
         if self.not_told_apart.is_empty() {
             write!(f, "; no other model of the hierarchy predicts as well")
         } else {
-            let names: Vec<&str> = self.not_told_apart.iter().map(|model| model.name()).collect();
+            let names: Vec<&str> = self
+                .not_told_apart
+                .iter()
+                .map(|model| model.name())
+                .collect();
             write!(f, "; not told apart from it: {}", names.join(", "))
         }
     }
@@ -143,10 +147,12 @@ mod tests {
             n: 1.5,
             p: 1.0,
         };
-        let incidences = (1_u8..).zip(log_errors).map(|(i, &error)| PredictedIncidence {
-            psi_deg: f64::from(10 * i),
-            log_error: Some(error),
-        });
+        let incidences = (1_u8..)
+            .zip(log_errors)
+            .map(|(i, &error)| PredictedIncidence {
+                psi_deg: f64::from(10 * i),
+                log_error: Some(error),
+            });
         let estimates = model.free().iter().map(|&parameter| Estimate {
             parameter,
             value: parameter.of(&parameters),
@@ -181,7 +187,11 @@ mod tests {
         assert_eq!(verdict.not_told_apart, [Model::ThreeN]);
         assert_eq!(verdict.largest_deg, 40.0);
         assert!((verdict.within_percent - 11.4).abs() < 0.1);
-        assert!(verdict.to_string().ends_with("not told apart from it: three+n"));
+        assert!(
+            verdict
+                .to_string()
+                .ends_with("not told apart from it: three+n")
+        );
     }
 
     /// A difference that changes its sign from one incidence to the next is no difference.

@@ -399,8 +399,7 @@ mod tests {
         change(&mut options);
         let progress = Progress::new(&NoObserver, Phase::Uncertainty);
         let fitted = fit_scan(&scan, &options, &progress).unwrap();
-        let uncertainty =
-            Uncertainty::of_fit(&scan, &fitted, Tests::Omitted, &progress).unwrap();
+        let uncertainty = Uncertainty::of_fit(&scan, &fitted, Tests::Omitted, &progress).unwrap();
         warnings(&scan, &fitted, &uncertainty, &progress).unwrap()
     }
 

@@ -90,7 +90,12 @@ impl Objective {
     pub(crate) fn relative(&self, at: Option<&ModelParameters>) -> Result<Self, ObjectiveError> {
         let weights = self.row_weights();
         let rows = at.map(|at| self.residuals(at));
-        let used = || weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0);
+        let used = || {
+            weights
+                .iter()
+                .enumerate()
+                .filter(|(_, weight)| **weight > 0.0)
+        };
         let reading = |i: usize| self.fixed_columns().0[i] / weights[i];
         let squares: f64 = used().map(|(i, _)| reading(i).powi(2)).sum();
         let floor = RELATIVE_FLOOR * (squares / used().count().max(1) as f64).sqrt();

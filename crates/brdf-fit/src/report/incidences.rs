@@ -26,7 +26,9 @@ fn rms(e_percent: f64) -> String {
 
 /// The median relative error of an incidence.
 fn median(deviations: Option<&Deviations>, psi_deg: f64) -> String {
-    let mut all = deviations.iter().flat_map(|deviations| &deviations.incidences);
+    let mut all = deviations
+        .iter()
+        .flat_map(|deviations| &deviations.incidences);
     let own = all.find(|(angle, _)| (angle - psi_deg).abs() < 1e-9);
     own.map_or_else(|| "-".to_owned(), |(_, percent)| two_digits(*percent))
 }
@@ -78,7 +80,13 @@ pub(super) fn one_below_another(
     let prediction = prediction(assessment);
     let percent = |e: Option<f64>| or_dash(e, rms);
     let row = |name: String, readings: usize, e, median: String, predicted| {
-        Row::new([name, readings.to_string(), percent(e), median, percent(predicted)])
+        Row::new([
+            name,
+            readings.to_string(),
+            percent(e),
+            median,
+            percent(predicted),
+        ])
     };
     let incidences = fit.incidences.iter().enumerate();
     let mut rows: Vec<Row> = incidences
@@ -86,7 +94,13 @@ pub(super) fn one_below_another(
             let predicted = prediction.and_then(|p| p.incidences.get(i)?.e_percent);
             let name = incidence.psi_deg.to_string();
             let median = median(deviations, incidence.psi_deg);
-            row(name, incidence.readings, incidence.e_percent, median, predicted)
+            row(
+                name,
+                incidence.readings,
+                incidence.e_percent,
+                median,
+                predicted,
+            )
         })
         .collect();
     rows.push(row(

@@ -42,7 +42,11 @@ fn row(report: &Report, parameters: &[Parameter], several_files: bool) -> Row {
     if several_files {
         cells.push(report.file.clone());
     }
-    cells.push(report.wavelength_um.map_or_else(|| "-".to_owned(), |um| um.to_string()));
+    cells.push(
+        report
+            .wavelength_um
+            .map_or_else(|| "-".to_owned(), |um| um.to_string()),
+    );
     let Some(fit) = &report.fit else {
         return Row::with_remark(cells, report.status());
     };

@@ -10,8 +10,7 @@ use crate::fit::Fit;
 use crate::fit::robust::REJECTED;
 use crate::format::{counted, digits, in_degrees, rounded, shortest, two_digits};
 use crate::inference::{
-    Assessment, Deviations, ErrorSizes, Knowledge, Noise, Physics, Quality, Uncertainty,
-    Warning,
+    Assessment, Deviations, ErrorSizes, Knowledge, Noise, Physics, Quality, Uncertainty, Warning,
 };
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::objective::MOST_FOLDS;
@@ -177,7 +176,11 @@ impl Report {
             }
         }
         text += &counted(self.readings, "reading");
-        let _ = write!(text, " of f_r in 1/sr, theta positive {}", side(self.convention.theta_positive));
+        let _ = write!(
+            text,
+            " of f_r in 1/sr, theta positive {}",
+            side(self.convention.theta_positive)
+        );
         if self.convention.phi_zero == Side::Forward {
             let _ = write!(text, ", phi zero {}", side(Side::Forward));
         }
@@ -425,7 +428,10 @@ fn sources(errors: &ErrorSizes, uncertainty: &Uncertainty) -> String {
     part(errors.patch_percent, "per stretch of 20 deg");
     part(errors.incidence_percent.unwrap_or(0.0), "per incidence");
     part(errors.constant_percent, "of the rms reading, constant");
-    part(errors.counting_percent, "like counting statistics at the rms reading");
+    part(
+        errors.counting_percent,
+        "like counting statistics at the rms reading",
+    );
     if let Some(factor) = errors.stated_factor {
         let factor = two_digits(factor);
         parts.insert(0, format!("{factor} times the stated standard deviations"));
@@ -473,7 +479,8 @@ fn degrees(uncertainty: &Uncertainty) -> String {
 /// Whether the residuals contradict independent errors of constant size.
 fn noise_lines(uncertainty: &Uncertainty) -> String {
     if let Noise::Given { reduced_chi_square } = uncertainty.noise {
-        let chi = format!("reduced chi^2 of the stated standard deviations: {reduced_chi_square:.2}");
+        let chi =
+            format!("reduced chi^2 of the stated standard deviations: {reduced_chi_square:.2}");
         return labelled("noise", &chi);
     }
     let (Some(tests), Some(errors)) = (&uncertainty.tests, &uncertainty.errors) else {
@@ -543,7 +550,13 @@ fn verdict_lines(fit: &Fit, assessment: &Assessment) -> String {
                     Some(candidate.model) != verdict.model && candidate.model == fit.model()
                 })
                 .filter_map(|candidate| candidate.relative_prediction.as_ref())
-                .map(|own| format!("; {}, within {} %", fit.model(), two_digits(own.within_percent())));
+                .map(|own| {
+                    format!(
+                        "; {}, within {} %",
+                        fit.model(),
+                        two_digits(own.within_percent())
+                    )
+                });
             format!("{verdict}{}", others.collect::<String>())
         }
         None => "none: too few incidences to predict one from the others".to_owned(),
@@ -665,22 +678,29 @@ mod tests {
         let titles = |report: &Report| -> Vec<&str> {
             let sections = report.sections();
             let texts: String = sections.iter().map(|s| s.text.as_str()).collect();
-            assert!(report.text().ends_with(&texts) && report.text().starts_with("synthetic"));
+            assert!(
+                report.detailed_text().ends_with(&texts) && report.text().starts_with("synthetic")
+            );
             sections.iter().map(|section| section.title).collect()
         };
         scan.source = "synthetic".to_owned();
         let (failed, _) = Report::new(&scan, &options, Depth::Fit);
-        assert_eq!(titles(&failed), ["error", "warnings"]);
+        assert_eq!(titles(&failed), ["reading", "error"]);
         options.refractive_index = Some(RefractiveIndex::Same(1.5));
         let (report, _) = Report::new(&scan, &options, Depth::Assessed);
         let all = [
+            "reading",
+            "quality",
+            "parameters",
+            "noise",
+            "verdict",
+            "warnings",
             "stages",
             "incidences",
             "global check and options",
-            "parameters",
+            "correlations",
             "models",
             "reflectance",
-            "warnings",
         ];
         assert_eq!(titles(&report), all);
     }

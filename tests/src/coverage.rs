@@ -449,10 +449,13 @@ impl Cell {
                 .flat_map(|psi| evenly(f64::from(psi), 28))
                 .collect(),
         };
-        let readings = angles
+        let mut readings: Vec<Measurement> = angles
             .iter()
             .map(|angles| reading(&surface, angles))
             .collect();
+        for reading in &mut readings {
+            reading.sigma = Some(0.005 * reading.brdf);
+        }
         let ideal = Measurements::new("ideal", readings).expect("readings");
         let best = fit(&ideal, &self.study.options(&own)).expect("a fit");
         (best.at(), surface)

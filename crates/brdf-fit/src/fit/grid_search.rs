@@ -326,9 +326,13 @@ impl Profile<'_> {
             })
     }
 
-    /// The lowest point of the profile at each value of k1 or n.
+    /// The lowest point of the profile at each value of k1, n or p.
     pub(crate) fn along(&self, parameter: Parameter) -> Vec<ProfilePoint> {
-        let axis = usize::from(parameter == Parameter::N);
+        let axis = match parameter {
+            Parameter::N => 1,
+            Parameter::P => 2,
+            _ => 0,
+        };
         let mut lowest: Vec<Option<usize>> = vec![None; self.search.axes[axis].len()];
         for i in 0..self.points.len() {
             let best = &mut lowest[self.indices(i)[axis]];

@@ -291,7 +291,10 @@ impl Inference<'_> {
         let width = spread.widths[i];
         self.undetermined
             .reason(parameter, value, &width)
-            .map_or_else(|| width.around(parameter, value), Knowledge::not_determined)
+            .map_or_else(
+                || width.around(parameter, value, &self.undetermined),
+                Knowledge::not_determined,
+            )
     }
 
     /// The upper limit of kD where the fit has it on its bound: the distance that an interval reaches
@@ -431,12 +434,13 @@ pub(super) struct Width {
 }
 
 impl Width {
-    fn around(&self, parameter: Parameter, value: f64) -> Knowledge {
+    fn around(&self, parameter: Parameter, value: f64, profile: &Undetermined) -> Knowledge {
+        let interval_95 = interval(parameter, value, self.half_95);
         Knowledge::Determined {
             standard_error: self.standard_error,
             degrees_of_freedom: Some(self.degrees_of_freedom),
             interval_68: interval(parameter, value, self.half_68),
-            interval_95: interval(parameter, value, self.half_95),
+            interval_95: profile.widened(parameter, interval_95, self),
             interval_constant_noise: Some(interval(parameter, value, self.half_constant_noise)),
         }
     }

@@ -3,12 +3,13 @@
 
 use brdf_core::ModelParameters;
 
-use super::estimate::{Estimate, Knowledge};
+use super::estimate::{Estimate, Interval, Knowledge};
 use super::uncertainty::Width;
 use crate::fit::Solution;
 use crate::fit::grid_search::{ProfilePoint, fixed_weights, solve_for};
 use crate::model::{K1_RANGE, Parameter};
 use crate::progress::{Cancelled, Progress};
+use crate::solver::{polish, unless_cancelled};
 
 /// An interval on a logarithmic scale that reaches this factor up and down says nothing.
 const WIDEST_FACTOR: f64 = 10.0;
@@ -16,16 +17,36 @@ const WIDEST_FACTOR: f64 = 10.0;
 const NARROWER: &str = "any narrower peak fits equally well: the scan does not resolve its width";
 const WIDER: &str = "any wider distribution fits equally well: the readings have no peak";
 
-/// The ends of the profile of E along a parameter, each with the point next to it.
-struct Ends {
+/// The profile of E along a parameter: the lowest point of the grid at each of its values, in ascending
+/// order.
+struct Along {
     parameter: Parameter,
-    lowest: [ProfilePoint; 2],
-    highest: [ProfilePoint; 2],
+    points: Vec<ProfilePoint>,
+}
+
+impl Along {
+    /// Minimises E at each point over the other free parameters. k1, n and p of a broad lobe have a
+    /// valley so narrow that the grid misses it.
+    fn polish(&mut self, fitted: &Solution, progress: &Progress<'_>) -> Result<(), Cancelled> {
+        let objective = fitted.searched();
+        let free = fitted.fit.options.reduced_model().free().to_vec();
+        let others: Vec<Parameter> = free.into_iter().filter(|p| *p != self.parameter).collect();
+        for point in &mut self.points {
+            let polished = polish(objective, point.parameters, &others, progress);
+            if let Some(parameters) = unless_cancelled(polished)? {
+                *point = ProfilePoint {
+                    parameters,
+                    error: objective.error(&parameters),
+                };
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What shows that a parameter is not determined.
 pub(super) struct Undetermined {
-    ends: Vec<Ends>,
+    profiles: Vec<Along>,
     /// The lowest E of the search and the fit.
     least: f64,
     /// E of the best model without a specular part.
@@ -36,34 +57,57 @@ impl Undetermined {
     pub(super) fn new(fitted: &Solution, progress: &Progress<'_>) -> Result<Self, Cancelled> {
         let search = fitted.grid_search(progress)?;
         let (profile, model) = (search.whole(), fitted.fit.options.reduced_model());
-        let ends = [Parameter::K1, Parameter::N, Parameter::P]
+        let mut profiles: Vec<Along> = [Parameter::K1, Parameter::N, Parameter::P]
             .into_iter()
             .filter(|parameter| model.free().contains(parameter))
-            .filter_map(|parameter| {
-                let points = profile.along(parameter);
-                let [.., next, last] = *points else {
-                    return None;
-                };
-                Some(Ends {
-                    parameter,
-                    lowest: [points[0], points[1]],
-                    highest: [last, next],
-                })
+            .map(|parameter| Along {
+                parameter,
+                points: profile.along(parameter),
             })
+            .filter(|along| along.points.len() > 1)
             .collect();
+        if let Some(along) = profiles
+            .iter_mut()
+            .find(|along| along.parameter == Parameter::P)
+        {
+            along.polish(fitted, progress)?;
+        }
         let at = fitted.fit.at();
         let searched = fitted.searched();
         let kd = fixed_weights(model)[1];
         let (_, _, without_lobe) = solve_for([Some(0.0), kd], &searched.profile_sums(&at));
         Ok(Self {
-            ends,
+            profiles,
             least: profile.lowest().error.min(searched.error(&at)),
             without_lobe,
         })
     }
 
-    fn ends(&self, parameter: Parameter) -> Option<&Ends> {
-        self.ends.iter().find(|ends| ends.parameter == parameter)
+    fn points(&self, parameter: Parameter) -> &[ProfilePoint] {
+        let along = self
+            .profiles
+            .iter()
+            .find(|along| along.parameter == parameter);
+        along.map_or(&[], |along| &along.points)
+    }
+
+    /// Whether E is as low as anywhere in an interval of this width.
+    fn fits(&self, error: f64, width: &Width) -> bool {
+        error - self.least < width.growth_95
+    }
+
+    /// An interval of the linear theory, widened to the points of the profile that fit as well: far from
+    /// linear, a valley of E is bent and longer than it seems at its lowest point.
+    pub(super) fn widened(&self, parameter: Parameter, own: Interval, width: &Width) -> Interval {
+        let along_p = self.points(Parameter::P).iter();
+        let fitting = along_p
+            .chain(self.points(parameter))
+            .filter(|point| self.fits(point.error, width))
+            .map(|point| parameter.of(&point.parameters));
+        fitting.fold(own, |interval, value| Interval {
+            from: interval.from.map(|from| from.min(value)),
+            to: interval.to.map(|to| to.max(value)),
+        })
     }
 
     /// Why a parameter of this value and width is not determined; `None` where it is.
@@ -73,13 +117,13 @@ impl Undetermined {
         value: f64,
         width: &Width,
     ) -> Option<&'static str> {
-        let fits = |error: f64| error - self.least < width.growth_95;
-        let (below, above) = self.ends(parameter).map_or((false, false), |ends| {
-            (fits(ends.lowest[0].error), fits(ends.highest[0].error))
-        });
+        let fits =
+            |point: Option<&ProfilePoint>| point.is_some_and(|point| self.fits(point.error, width));
+        let points = self.points(parameter);
+        let (below, above) = (fits(points.first()), fits(points.last()));
         let reaches = |scale: f64| width.half_95 > scale * WIDEST_FACTOR.ln();
         match parameter {
-            Parameter::K2 if fits(self.without_lobe) => {
+            Parameter::K2 if self.fits(self.without_lobe, width) => {
                 Some("the model without a specular part fits equally well")
             }
             Parameter::K1 if below && above => Some("any width fits equally well"),
@@ -110,13 +154,10 @@ impl Undetermined {
         let Some(Knowledge::NotDetermined { reason, .. }) = width.map(|e| &e.knowledge) else {
             return;
         };
-        let Some(ends) = self.ends(Parameter::K1) else {
-            return;
-        };
-        let [end, next] = if reason == WIDER {
-            ends.highest
-        } else {
-            ends.lowest
+        let (end, next) = match self.points(Parameter::K1) {
+            [.., next, end] if reason == WIDER => (end, next),
+            [end, next, ..] => (end, next),
+            _ => return,
         };
         let logarithm = |of: fn(&ModelParameters) -> f64| {
             (of(&end.parameters) / of(&next.parameters)).ln().abs()

@@ -415,13 +415,12 @@ pub struct Coverage {
 impl Cell {
     /// Simulates scans and counts the intervals that hold the truth.
     pub fn run(&self, scans: u64) -> Vec<Coverage> {
-        let (truth, surface) = self.truth();
+        let (truth, _) = self.truth();
         let options = self.study.options(&truth);
-        let seed = |i: u64| 1_000_003 * i + u64::from(self.noise as u8) + 17 * self.design as u64;
-        let reports: Vec<Report> = (0..scans)
+        let reports: Vec<Report> = self
+            .scans(scans)
             .into_par_iter()
-            .map(|i| {
-                let scan = self.simulate(&surface, &mut generator(seed(i)));
+            .map(|scan| {
                 let (report, error) = Report::new(&scan, &options, Depth::Fit);
                 assert_eq!(error, None, "{self:?}");
                 report
@@ -430,6 +429,15 @@ impl Cell {
         let free = options.model.free();
         let of = |&parameter: &Parameter| coverage(parameter, parameter.of(&truth), &reports);
         free.iter().map(of).collect()
+    }
+
+    /// Simulated scans, the same in every run.
+    pub fn scans(&self, count: u64) -> Vec<Measurements> {
+        let (_, surface) = self.truth();
+        let seed = |i: u64| 1_000_003 * i + u64::from(self.noise as u8) + 17 * self.design as u64;
+        (0..count)
+            .map(|i| self.simulate(&surface, &mut generator(seed(i))))
+            .collect()
     }
 
     /// The parameters that the intervals should hold, and the surface. A surface of another model has

@@ -82,7 +82,9 @@ pub fn two_digits(value: f64) -> String {
         size if size >= 9.95 => 0,
         size if size >= 0.995 => 1,
         size if size >= 0.0995 => 2,
-        _ => return shortest(format!("{value:.1e}").parse().unwrap_or(value)),
+        size if size >= 0.000_95 => 3,
+        0.0 => 0,
+        _ => return format!("{value:.0e}"),
     };
     format!("{value:.decimals$}")
 }

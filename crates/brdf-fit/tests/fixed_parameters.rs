@@ -228,7 +228,10 @@ fn every_part_of_a_report_keeps_what_is_held() {
     let estimated = report.uncertainty.unwrap().estimates;
     assert!(estimated.iter().map(|e| e.parameter).eq(free));
     let assessment = report.assessment.unwrap();
-    assert!(assessment.bootstrap.iter().map(|s| s.parameter).eq(free));
+    assert!(!assessment.sensitivity.is_empty());
+    for without in &assessment.sensitivity {
+        assert_eq!((without.parameters.k1, without.parameters.n), (0.25, 1.6));
+    }
     assert_eq!(assessment.models.len(), Model::ALL.len());
     for candidate in assessment.models {
         for (parameter, value) in fixed.within(candidate.model).iter() {

@@ -214,8 +214,7 @@ fn the_report_names_the_scope_of_stage_1_alone() {
     let (report, _) = Report::new(&rippled(), &alone(), Depth::Fit);
     assert_eq!(report.status(), "ok (stage 1 alone)");
     let (text, readings) = (report.text(), report.fit.as_ref().unwrap().readings);
-    let line =
-        format!("stage 1 alone: all results below are for psi <= 60 deg, {readings} readings");
+    let line = format!("stage 1 alone, psi <= 60 deg: {readings} readings");
     assert!(text.contains(&line) && !text.contains("stage 2"), "{text}");
     let figures = report_figures(&rippled(), &report).unwrap();
     let said = |f: &Figure| f.caption.contains("fitted to psi <= 60 deg alone");

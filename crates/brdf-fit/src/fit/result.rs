@@ -133,6 +133,15 @@ impl Fit {
         10.0 * self.e_percent.max(0.0).sqrt()
     }
 
+    /// [`rms_percent`](Self::rms_percent) over the readings that a robust loss does not reject.
+    pub fn accepted_rms_percent(&self) -> f64 {
+        let accepted = self
+            .robust
+            .as_ref()
+            .and_then(|robust| robust.accepted_e_percent);
+        10.0 * accepted.unwrap_or(self.e_percent).max(0.0).sqrt()
+    }
+
     /// The last stage.
     pub fn last_stage(&self) -> Option<&Stage> {
         self.stage2.as_ref().or(self.stage1.as_ref())

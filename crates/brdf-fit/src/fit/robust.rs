@@ -114,6 +114,9 @@ pub struct RobustFit {
     pub scale: f64,
     /// E of the least squares fit in percent.
     pub least_squares_e_percent: f64,
+    /// E over the readings that are not rejected, in percent; `None` where all are zero.
+    #[serde(default)]
+    pub accepted_e_percent: Option<f64>,
     /// The factor that converts E over the degrees of freedom into the variance of the residuals, where
     /// the weights depend on the residuals: Huber's covariance of an M-estimate.
     pub variance_factor: f64,
@@ -166,12 +169,15 @@ pub(crate) fn fit_robustly(
         (at, weighted, scale) =
             reweighted_fit(objective, loss, at, free, scale_of_huber, progress)?;
     }
-    let deviations = |(r, _): (f64, f64)| if scale > 0.0 { -r / scale } else { 0.0 };
-    let deviations: Vec<f64> = objective
-        .residuals(&at)
-        .into_iter()
-        .map(deviations)
-        .collect();
+    let deviation = |r: f64| if scale > 0.0 { -r / scale } else { 0.0 };
+    let residuals = objective.residuals(&at);
+    let deviations: Vec<f64> = residuals.iter().map(|(r, _)| deviation(*r)).collect();
+    let accepted = residuals
+        .iter()
+        .filter(|(r, _)| deviation(*r).abs() <= REJECTED);
+    let (above, below) = accepted.fold((0.0, 0.0), |(above, below), (r, y)| {
+        (above + r * r, below + y * y)
+    });
     let mut rejected: Vec<Rejected> = deviations
         .iter()
         .zip(objective.readings())
@@ -187,6 +193,7 @@ pub(crate) fn fit_robustly(
         loss,
         scale,
         variance_factor: variance_factor(loss, &deviations),
+        accepted_e_percent: (below > 0.0).then(|| 100.0 * above / below),
         least_squares_e_percent: 100.0 * objective.error(&start),
         reduced,
         rejected,

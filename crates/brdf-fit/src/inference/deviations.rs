@@ -40,6 +40,11 @@ impl Quality {
         }
     }
 
+    /// The quality of a fit, over the readings that a robust loss does not reject.
+    pub fn of(fit: &Fit) -> Self {
+        Self::of_rms(fit.accepted_rms_percent())
+    }
+
     /// `good`, `fair` or `poor`.
     pub fn word(self) -> &'static str {
         match self {

@@ -139,9 +139,9 @@ fn score_test<const P: usize>(groups: &[Common<P>]) -> f64 {
         let lost: f64 = group.projected.iter().map(|q| q * q).sum();
         expected += group.information - lost;
         squares += group.information * (group.information - 2.0 * lost);
-        for i in 0..P {
-            for j in 0..P {
-                products[i][j] += group.projected[i] * group.projected[j];
+        for (row, a) in products.iter_mut().zip(&group.projected) {
+            for (product, b) in row.iter_mut().zip(&group.projected) {
+                *product += a * b;
             }
         }
     }

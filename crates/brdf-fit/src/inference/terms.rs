@@ -77,8 +77,8 @@ struct Row<const P: usize> {
     /// w (sum w J J^T)^-1 J.
     influence: [f64; P],
     incidence: usize,
-    /// The row of the objective.
-    row: usize,
+    /// The index of the row in the objective.
+    index: usize,
     view: View,
 }
 
@@ -198,7 +198,7 @@ impl<const P: usize> Readings<P> {
                     weight,
                     influence: [0.0; P],
                     incidence: readings.incidences,
-                    row: i,
+                    index: i,
                     view: views[own],
                 });
             }
@@ -223,7 +223,7 @@ impl<const P: usize> Readings<P> {
             Term {
                 size,
                 // Without the weight of the loss.
-                residual: row.term.residual / rms / robust.weights[row.row],
+                residual: row.term.residual / rms / robust.weights[row.index],
                 slopes: row.term.slopes,
                 white: [1.0, size, size * size],
             }

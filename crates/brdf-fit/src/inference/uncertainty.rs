@@ -98,14 +98,14 @@ impl Uncertainty {
         let (scan, solution) = share.as_ref().map_or((&*fitted_readings, fitted), |share| {
             (&share.scan, &share.solution)
         });
-        Inference {
+        let inference = Inference {
             scan,
             fitted: solution,
             share: scan.readings().len() as f64 / fitted_readings.readings().len() as f64,
             undetermined: Undetermined::new(fitted, progress)?,
             tests,
-        }
-        .uncertainty()
+        };
+        Ok(inference.uncertainty())
     }
 
     fn without_covariance(fit: &Fit, knowledge: impl Fn(Parameter) -> Knowledge) -> Self {
@@ -222,7 +222,7 @@ impl Inference<'_> {
         self.fitted.fit.options.reduced_model()
     }
 
-    fn uncertainty(&self) -> Result<Uncertainty, Cancelled> {
+    fn uncertainty(&self) -> Uncertainty {
         let fit = &self.fitted.fit;
         let at = fit.at();
         let covered: Vec<Parameter> = self
@@ -248,7 +248,7 @@ impl Inference<'_> {
             }
         }
         uncertainty.covered = covered;
-        Ok(uncertainty)
+        uncertainty
     }
 
     fn knowledge(
@@ -265,7 +265,7 @@ impl Inference<'_> {
             );
         }
         if parameter == Parameter::K1 && is_on_bound(parameter, at) {
-            return Knowledge::not_determined(self.undetermined.width_at_limit(value));
+            return Knowledge::not_determined(Undetermined::width_at_limit(value));
         }
         let misses = spread.is_some_and(Spread::misses);
         if is_on_bound(parameter, at) {

@@ -96,10 +96,14 @@ impl Undetermined {
         error - self.least < width.growth_95
     }
 
-    /// An interval of the linear theory, widened to the points of the profile that fit as well: far from
-    /// linear, a valley of E is bent and longer than it seems at its lowest point.
+    /// The interval of the linear theory. With a free exponent it is widened to the points of the profile
+    /// that fit as well: the valley of E in k1 and p is bent, and longer than it seems at its lowest
+    /// point.
     pub(super) fn widened(&self, parameter: Parameter, own: Interval, width: &Width) -> Interval {
         let along_p = self.points(Parameter::P).iter();
+        if along_p.len() == 0 {
+            return own;
+        }
         let fitting = along_p
             .chain(self.points(parameter))
             .filter(|point| self.fits(point.error, width))
@@ -143,7 +147,7 @@ impl Undetermined {
     }
 
     /// Why a k1 at the end of its range is not determined.
-    pub(super) fn width_at_limit(&self, k1: f64) -> &'static str {
+    pub(super) fn width_at_limit(k1: f64) -> &'static str {
         if k1 <= K1_RANGE.0 { NARROWER } else { WIDER }
     }
 

@@ -396,8 +396,8 @@ fn add_patch<const P: usize>(
             score.1 += shape * diagonal;
         }
         common.residual += row.size * z;
-        for c in 0..P {
-            common.projected[c] += row.size * q[c];
+        for (sum, q) in common.projected.iter_mut().zip(&q) {
+            *sum += row.size * q;
         }
     }
     common

@@ -211,7 +211,7 @@ pub(crate) fn warnings(
 ) -> Result<Vec<Warning>, Cancelled> {
     let fit = &fitted.fit;
     let mut warnings = Vec::new();
-    if Quality::of_rms(fit.rms_percent()) == Quality::Poor {
+    if Quality::of(fit) == Quality::Poor {
         warnings.push(Warning::NotDescribed {
             e_percent: fit.e_percent,
         });

@@ -147,7 +147,8 @@ fn inferred(report: &Report, parameters: &[Parameter]) -> Vec<String> {
     }
     let rms = report.fit.as_ref().map(Fit::rms_percent);
     cells.push(number(rms));
-    cells.push(rms.map_or("", |rms| Quality::of_rms(rms).word()).to_owned());
+    let quality = report.fit.as_ref().map(Quality::of);
+    cells.push(quality.map_or("", Quality::word).to_owned());
     let kinds: Vec<&str> = report.warnings.iter().map(Warning::kind).collect();
     cells.push(kinds.join(";"));
     cells

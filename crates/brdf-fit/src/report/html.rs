@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 
 use super::run::Report;
 use super::table::{Column, Row, Table, escaped};
-use super::text::refractive_index;
+use super::text::{fit_options, parameters_notes, refractive_index};
 use super::{incidences, models, parameters, stages};
-use crate::format::counted;
-use crate::inference::Assessment;
+use crate::fit::Fit;
+use crate::format::{counted, two_digits};
+use crate::inference::{Assessment, Quality};
 
 const STYLE: &str = "
 body { font: 15px/1.45 sans-serif; color: #222; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
@@ -22,7 +23,16 @@ th.left, td.left { text-align: left; }
 figure { margin: 1.2rem 0; break-inside: avoid; } figure svg { max-width: 100%; height: auto; }
 figcaption { font-size: 0.9rem; color: #444; }
 nav ul { columns: 2; }
-@media print { body { max-width: none; margin: 0; font-size: 11px; } h2 { break-before: page; } h2:first-of-type { break-before: auto; } }
+h2, h3 { break-after: avoid; } tr { break-inside: avoid; }
+dl { display: grid; grid-template-columns: max-content auto; gap: 0.2rem 1rem; font-size: 0.9rem; } dd { margin: 0; }
+footer { border-top: 1px solid #bbb; margin-top: 3rem; }
+@page { size: A4; margin: 14mm; }
+@media print {
+body { max-width: none; margin: 0; padding: 0; font-size: 10px; }
+h2 { break-before: page; } h2:first-of-type { break-before: auto; }
+.scroll { overflow: visible; break-inside: avoid; } table { font-size: 8px; } th, td { padding: 0.1rem 0.3rem; }
+figure svg { max-height: 112mm; width: 100%; }
+}
 ";
 
 /// A picture of the page.
@@ -53,7 +63,7 @@ pub fn html(reports: &[(&Report, &[Picture<'_>])]) -> String {
         let _ = writeln!(page, "<h2 id=\"fit-{i}\">{}</h2>", escaped(&title(report)));
         page += &section(report, pictures);
     }
-    page + "</body>\n</html>\n"
+    page + &legend() + "</body>\n</html>\n"
 }
 
 /// The sample, or else the file, and the wavelength.
@@ -65,26 +75,24 @@ fn title(report: &Report) -> String {
     format!("{name}{wavelength}")
 }
 
+/// What a reader wants first: how well the model describes the sample, warnings, the verdict and the
+/// pictures. The tables follow.
 fn section(report: &Report, pictures: &[Picture<'_>]) -> String {
     let mut text = introduction(report);
     if let Some(error) = &report.error {
         let _ = writeln!(text, "<p class=\"error\">{}</p>", escaped(error));
     }
+    if let Some(fit) = &report.fit {
+        text += &quality(report, fit);
+    }
+    let assessment = report.assessment.as_ref();
+    if let Some(verdict) = assessment.and_then(|assessment| assessment.verdict.as_ref()) {
+        let verdict = escaped(&verdict.to_string());
+        let _ = writeln!(text, "<p><strong>Verdict:</strong> {verdict}.</p>");
+    }
     for warning in &report.warnings {
         let warning = escaped(&warning.to_string());
         let _ = writeln!(text, "<p class=\"warning\">{warning}</p>");
-    }
-    let assessment = report.assessment.as_ref();
-    if let Some(fit) = &report.fit {
-        text += &stages::brief(fit).html();
-        if let Some(uncertainty) = &report.uncertainty {
-            text += &parameters::table(uncertainty, assessment).html();
-        }
-        text += &incidences::one_below_another(fit, report.deviations.as_ref(), assessment).html();
-    }
-    if let Some(assessment) = assessment {
-        text += &models(assessment).html();
-        text += &physics(assessment);
     }
     for picture in pictures {
         // Without its XML declaration an SVG document is an element of the page.
@@ -96,10 +104,110 @@ fn section(report: &Report, pictures: &[Picture<'_>]) -> String {
             "<figure>{svg}<figcaption>{caption}</figcaption></figure>"
         );
     }
+    if let Some(uncertainty) = &report.uncertainty {
+        let mut table = parameters::table(uncertainty, assessment);
+        table.notes = parameters_notes(uncertainty, assessment);
+        text += &table.html();
+    }
+    if let Some(fit) = &report.fit {
+        let deviations = report.deviations.as_ref();
+        text += &incidences::one_below_another(fit, deviations, assessment).html();
+    }
+    if let Some(assessment) = assessment {
+        text += &models(assessment).html();
+    }
+    if let Some(fit) = &report.fit {
+        text += &stages::brief(fit).html();
+    }
+    if let Some(assessment) = assessment {
+        text += &physics(assessment);
+    }
+    text + &readings(report)
+}
+
+/// The error of the fit in a paragraph.
+fn quality(report: &Report, fit: &Fit) -> String {
+    let rms = fit.rms_percent();
+    let quality = Quality::of(fit);
+    let mut text = format!(
+        "<p><strong>{}:</strong> {quality}. The rms error is {} % of the rms of f_r cos \u{3b8} (E = {:.3} %)",
+        capitalised(quality.word()),
+        two_digits(rms),
+        fit.e_percent
+    );
+    if let Some(deviations) = &report.deviations {
+        let _ = write!(
+            text,
+            "; half of the readings are within {} %, 90 % within {} % of the measured f_r",
+            two_digits(deviations.median_percent),
+            two_digits(deviations.ninety_percent)
+        );
+    }
+    text + ".</p>\n"
+}
+
+fn capitalised(word: &str) -> String {
+    let mut letters = word.chars();
+    let first = letters.next().map(|first| first.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
+
+/// What was read, and how.
+fn readings(report: &Report) -> String {
+    let mut text = String::new();
+    for conversion in &report.conversions {
+        let _ = writeln!(text, "<p>Read: {}.</p>", escaped(conversion));
+    }
+    if !report.ignored_columns.is_empty() {
+        let columns = escaped(&report.ignored_columns.join(", "));
+        let _ = writeln!(text, "<p>Columns that are not used: {columns}.</p>");
+    }
     text
 }
 
-/// A paragraph with the file, the number of readings, the model and E.
+/// The symbols and terms of the page, and the program.
+const LEGEND: [(&str, &str); 9] = [
+    ("k2, kD", "weights of the specular and the diffuse part"),
+    ("k1", "width of the facet distribution"),
+    (
+        "n",
+        "refractive index; fitted, it stands in for what the model lacks",
+    ),
+    (
+        "p",
+        "exponent of the facet distribution, 1 in the paper's model",
+    ),
+    (
+        "E",
+        "sum of (f_r,measured - f_r,model)^2 cos^2 \u{3b8} over the sum of f_r,measured^2 cos^2 \u{3b8} (eq. 5)",
+    ),
+    ("rms", "sqrt(E): the rms error over the rms reading"),
+    (
+        "predicted rms",
+        "of each incidence by a fit of E to the other incidences",
+    ),
+    (
+        "predicts",
+        "typical relative error of that, by fits of relative errors",
+    ),
+    (
+        "95 %",
+        "holds the best-fit value of ideal readings at such angles in 95 of 100 scans, if relative errors are \
+         alike at all incidences and independent between them",
+    ),
+];
+
+fn legend() -> String {
+    let mut text = "<footer>\n<h3>Symbols</h3>\n<dl>\n".to_owned();
+    for (symbol, meaning) in LEGEND {
+        let _ = writeln!(text, "<dt>{symbol}</dt><dd>{meaning}</dd>");
+    }
+    let version = env!("CARGO_PKG_VERSION");
+    let _ = writeln!(text, "</dl>\n<p>brdf {version}</p>\n</footer>");
+    text
+}
+
+/// A paragraph with the file, the number of readings, the model and the options.
 fn introduction(report: &Report) -> String {
     let mut text = format!("<p>{}: ", escaped(&report.file));
     text += &counted(report.readings, "reading");
@@ -107,16 +215,12 @@ fn introduction(report: &Report) -> String {
         let model = fit.model();
         let _ = write!(
             text,
-            ", model {model} ({}), {}, E = {:.4} %",
+            ", model {model} ({}), {}",
             escaped(model.description()),
-            refractive_index(fit),
-            fit.e_percent
+            refractive_index(fit)
         );
-        if let Some(scope) = fit.options.scope() {
-            let _ = write!(text, "; stage 1 alone, {}", escaped(&scope));
-        }
-        if !fit.options.fixed.is_empty() {
-            let _ = write!(text, "; fixed: {}", fit.options.fixed);
+        for option in fit_options(fit) {
+            let _ = write!(text, "; {}", escaped(&option));
         }
     }
     text + "</p>\n"
@@ -128,10 +232,6 @@ fn models(assessment: &Assessment) -> Table {
     table.notes.extend(
         missing.map(|missing| format!("{} was not fitted: {}.", missing.model, missing.reason)),
     );
-    let verdict = assessment.verdict.as_ref();
-    table
-        .notes
-        .extend(verdict.map(|verdict| format!("Verdict: {verdict}.")));
     table.notes.push(models::legend());
     table
 }
@@ -186,6 +286,7 @@ mod tests {
             page.matches("<table>").count(),
             page.matches("</table>").count()
         );
-        assert!(page.contains("Verdict: three suffices"));
+        assert!(page.contains("<strong>Verdict:</strong> three suffices"));
+        assert!(page.contains("<h3>Symbols</h3>"));
     }
 }

@@ -2,12 +2,16 @@
 
 use super::run::Report;
 use super::table::{Column, Row, Table};
-use crate::format::two_digits;
+use crate::format::{digits, two_digits};
 use crate::inference::Quality;
 use crate::model::Parameter;
 
-/// A table with a row for each report: its wavelength, its parameters with their intervals of 95 %,
-/// and its error. Where the reports are of several files, their names come first.
+/// The most parameters whose intervals fit into the width of the text.
+const MOST_INTERVALS: usize = 3;
+
+/// A table with a row for each report: its wavelength, its parameters, with their intervals of 95 % if
+/// they are three at most, and its error. Where the reports are of several files, the names of these
+/// come last.
 pub fn summary(reports: &[Report]) -> Table {
     let several_files = reports.iter().any(|report| report.file != reports[0].file);
     let free = |parameter: &Parameter| {
@@ -15,17 +19,18 @@ pub fn summary(reports: &[Report]) -> Table {
         fits.any(|fit| fit.fits(*parameter))
     };
     let parameters: Vec<Parameter> = Parameter::ALL.into_iter().filter(free).collect();
-    let mut columns = Vec::new();
+    let mut columns = vec![Column::left("um", 8)];
+    columns.extend(parameters.iter().map(|parameter| {
+        if parameters.len() <= MOST_INTERVALS {
+            Column::right(format!("{parameter} (95 %)"), 27)
+        } else {
+            Column::right(parameter.to_string(), 12)
+        }
+    }));
+    columns.extend([Column::right("rms %", 6), Column::left("", 0)]);
     if several_files {
-        columns.push(Column::left("file", 10));
+        columns.push(Column::left("file", 0));
     }
-    columns.push(Column::right("um", 7));
-    columns.extend(
-        parameters
-            .iter()
-            .map(|parameter| Column::right(format!("{parameter} (95 %)"), 24)),
-    );
-    columns.extend([Column::right("rms %", 6), Column::left("quality", 0)]);
     Table {
         caption: "All fits".to_owned(),
         columns,
@@ -37,25 +42,23 @@ pub fn summary(reports: &[Report]) -> Table {
     }
 }
 
-fn row(report: &Report, parameters: &[Parameter], several_files: bool) -> Row {
-    let mut cells = Vec::new();
-    if several_files {
-        cells.push(report.file.clone());
-    }
-    cells.push(
-        report
-            .wavelength_um
-            .map_or_else(|| "-".to_owned(), |um| um.to_string()),
-    );
+fn row(report: &Report, parameters: &[Parameter], with_file: bool) -> Row {
+    let wavelength = report.wavelength_um;
+    let mut cells = vec![wavelength.map_or_else(|| "-".to_owned(), |um| um.to_string())];
     let Some(fit) = &report.fit else {
         return Row::with_remark(cells, report.status());
     };
+    let at = fit.at();
     let uncertainty = report.uncertainty.as_ref();
     cells.extend(parameters.iter().map(|&parameter| {
         let estimate = uncertainty.and_then(|uncertainty| uncertainty.estimate(parameter));
-        estimate.map_or_else(|| "-".to_owned(), ToString::to_string)
+        match estimate {
+            Some(estimate) if parameters.len() <= MOST_INTERVALS => estimate.to_string(),
+            _ => digits(parameter.of(&at)),
+        }
     }));
     let rms = fit.rms_percent();
-    cells.extend([two_digits(rms), Quality::of_rms(rms).word().to_owned()]);
+    cells.extend([two_digits(rms), Quality::of(fit).word().to_owned()]);
+    cells.extend(with_file.then(|| report.file.clone()));
     Row::new(cells)
 }

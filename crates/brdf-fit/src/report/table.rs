@@ -128,7 +128,8 @@ impl Table {
             let width = column.width;
             let _ = match column.alignment {
                 Alignment::Left => write!(line, "{}{cell:<width$}", gap(after_number)),
-                Alignment::Right => write!(line, "{cell:>width$}"),
+                // A cell as wide as its column keeps its distance.
+                Alignment::Right => write!(line, " {cell:>width$}", width = width - 1),
             };
             after_number = column.alignment == Alignment::Right;
         }

@@ -14,7 +14,7 @@ use crate::inference::{
 };
 use crate::model::{K1_RANGE, Model, Parameter};
 use crate::objective::MOST_FOLDS;
-use crate::scan::{Measurement, Side};
+use crate::scan::{Convention, Measurement, Side};
 
 /// A section of the text of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -67,6 +67,7 @@ impl Report {
         let assessment = self.assessment.as_ref();
         let mut sections = vec![("reading", self.reading_lines())];
         if let Some(fit) = &self.fit {
+            sections.push(("fit", fit_lines(fit)));
             sections.push(("quality", self.quality_lines(fit)));
         } else {
             let error = self.error.as_deref().unwrap_or("no fit");
@@ -119,7 +120,7 @@ impl Report {
 
     /// The error of the fit.
     fn quality_lines(&self, fit: &Fit) -> String {
-        let quality = Quality::of_rms(fit.rms_percent());
+        let quality = Quality::of(fit);
         let mut text = labelled("quality", &format!("{}: {quality}", quality.word()));
         text += &labelled(
             "error",
@@ -129,6 +130,15 @@ impl Report {
                 shortest_percent(fit.e_percent)
             ),
         );
+        if fit.accepted_rms_percent() < fit.rms_percent() {
+            text += &labelled(
+                "",
+                &format!(
+                    "without the rejected readings, which the quality is of: rms {} %",
+                    two_digits(fit.accepted_rms_percent())
+                ),
+            );
+        }
         if let Some(deviations) = &self.deviations {
             text += &labelled(
                 "",
@@ -155,37 +165,32 @@ impl Report {
     }
 
     fn heading(&self) -> String {
-        let mut text = self.file.clone();
-        if let Some(sample) = self.metadata.get("sample") {
-            let _ = write!(text, ": {sample}");
-        }
-        text.push('\n');
-        let wavelength = self
-            .wavelength_um
-            .map_or_else(|| "wavelength not stated".to_owned(), |w| format!("{w} um"));
-        let _ = write!(text, "  {wavelength}, ");
+        let title = match self.metadata.get("sample") {
+            Some(sample) => format!("{}: {sample}", self.file),
+            None => self.file.clone(),
+        };
+        let mut parts = vec![
+            self.wavelength_um
+                .map_or_else(|| "wavelength not stated".to_owned(), |w| format!("{w} um")),
+        ];
         if let Some(fit) = &self.fit {
-            let _ = write!(text, "{}, ", refractive_index(fit));
+            parts.push(refractive_index(fit));
             if fit.model() != Model::Three {
-                let _ = write!(
-                    text,
-                    "model {}: {}, ",
-                    fit.model(),
-                    fit.model().description()
-                );
+                let description = fit.model().description();
+                parts.push(format!("model {}: {description}", fit.model()));
             }
         }
-        text += &counted(self.readings, "reading");
-        let _ = write!(
-            text,
-            " of f_r in 1/sr, theta positive {}",
-            side(self.convention.theta_positive)
-        );
-        if self.convention.phi_zero == Side::Forward {
-            let _ = write!(text, ", phi zero {}", side(Side::Forward));
+        let readings = counted(self.readings, "reading");
+        parts.push(format!("{readings} of f_r in 1/sr"));
+        let Convention {
+            theta_positive,
+            phi_zero,
+        } = self.convention;
+        parts.push(format!("theta positive {}", side(theta_positive)));
+        if phi_zero == Side::Forward {
+            parts.push(format!("phi zero {}", side(phi_zero)));
         }
-        text.push('\n');
-        text
+        wrapped("", &title, 2) + &wrapped("  ", &parts.join(", "), 4)
     }
 }
 
@@ -204,20 +209,32 @@ const INDENT: usize = 12;
 
 /// A sentence behind a label, wrapped to the width of the text.
 fn labelled(label: &str, sentence: &str) -> String {
-    let mut text = format!("  {label:<width$}", width = INDENT - 2);
-    let mut column = INDENT;
+    let label = format!("  {label:<width$}", width = INDENT - 2);
+    let text = wrapped(&label, sentence, INDENT);
+    if sentence.is_empty() {
+        String::new()
+    } else {
+        text
+    }
+}
+
+/// A line that begins with a label, wrapped at blanks to the width of the text; what follows is
+/// indented.
+fn wrapped(label: &str, sentence: &str, indent: usize) -> String {
+    let mut text = label.to_owned();
+    let mut column = label.chars().count();
     for (i, word) in sentence.split(' ').enumerate() {
-        if i > 0 && column + 1 + word.chars().count() > WIDTH {
-            let _ = write!(text, "\n{:INDENT$}", "");
-            column = INDENT;
+        let length = word.chars().count();
+        if i > 0 && column + 1 + length > WIDTH {
+            let _ = write!(text, "\n{:indent$}", "");
+            column = indent;
         } else if i > 0 {
             text.push(' ');
             column += 1;
         }
         text += word;
-        column += word.chars().count();
+        column += length;
     }
-    text.truncate(text.trim_end().len());
     text.push('\n');
     text
 }
@@ -245,29 +262,61 @@ pub(super) fn refractive_index(fit: &Fit) -> String {
     format!("n = {}{fitted}", shortest(fit.n))
 }
 
+/// What is not as in a fit with the default options.
+fn fit_lines(fit: &Fit) -> String {
+    let parts = fit_options(fit);
+    if parts.is_empty() {
+        return String::new();
+    }
+    labelled("fit", &parts.join("; "))
+}
+
+/// The clauses of [`fit_lines`].
+pub(super) fn fit_options(fit: &Fit) -> Vec<String> {
+    let mut parts = Vec::new();
+    if let Some(scope) = fit.options.scope() {
+        parts.push(format!(
+            "stage 1 alone, {scope}: {}",
+            counted(fit.readings, "reading")
+        ));
+    }
+    if !fit.options.fixed.is_empty() {
+        parts.push(format!("fixed: {}", fit.options.fixed));
+    }
+    let weights = fit.options.weights.to_string();
+    if !weights.is_empty() {
+        parts.push(format!("readings weighted by {weights}"));
+    }
+    if let Some(robust) = &fit.robust {
+        parts.push(format!(
+            "robust ({} loss): {} rejected",
+            robust.loss,
+            counted(robust.rejected.len(), "reading")
+        ));
+    }
+    if let Some(energy) = &fit.energy {
+        let effect = if energy.binding {
+            "constrains the fit"
+        } else {
+            "is met by the unconstrained fit"
+        };
+        parts.push(format!(
+            "rho(psi) <= 1 up to {} deg {effect}",
+            energy.limit_deg
+        ));
+    }
+    parts
+}
+
 fn stages_section(fit: &Fit) -> String {
     let mut text = format!("\n{}", stages::detailed(fit).text());
     if let Some(reason) = &fit.stage1_left_out {
         let _ = writeln!(text, "  stage 1 skipped: {reason}");
-    } else if let Some(scope) = fit.options.scope() {
-        let _ = writeln!(
-            text,
-            "  stage 1 alone: all results below are for {scope}, {}",
-            counted(fit.readings, "reading")
-        );
     } else if fit.stage1.is_some() {
         let limit = in_degrees(fit.options.stage1_limit);
         let _ = writeln!(text, "  stage 1: psi <= {limit} deg");
     }
     let _ = writeln!(text, "  initial values: {}", fit.initial);
-    let weights = fit.options.weights.to_string();
-    if !weights.is_empty() {
-        let _ = writeln!(text, "  readings weighted by {weights}");
-    }
-    let fixed = &fit.options.fixed;
-    if !fixed.is_empty() {
-        let _ = writeln!(text, "  fixed: {fixed}");
-    }
     text + &bound_lines(fit)
 }
 
@@ -385,27 +434,36 @@ fn options_lines(fit: &Fit, rejected: &[Measurement]) -> String {
 
 /// The parameters, the errors that their intervals come from, and what they rest on.
 fn parameters_section(uncertainty: &Uncertainty, assessment: Option<&Assessment>) -> String {
-    let mut text = format!("\n{}", parameters::table(uncertainty, assessment).text());
-    if let Some(reason) = no_interval(uncertainty) {
-        text += &labelled("", reason);
-    }
+    let table = parameters::table(uncertainty, assessment).text();
+    let notes = parameters_notes(uncertainty, assessment);
+    let labels = std::iter::once("intervals").chain(std::iter::repeat(""));
+    let notes = labels
+        .zip(&notes)
+        .map(|(label, note)| labelled(label, note));
+    format!("\n{table}{}", notes.collect::<String>())
+}
+
+/// What the intervals come from, and what the parameters rest on, as sentences.
+pub(super) fn parameters_notes(
+    uncertainty: &Uncertainty,
+    assessment: Option<&Assessment>,
+) -> Vec<String> {
+    let mut notes: Vec<String> = no_interval(uncertainty)
+        .map(str::to_owned)
+        .into_iter()
+        .collect();
     if let (Some(errors), false) = (&uncertainty.errors, uncertainty.covariance.is_empty()) {
-        text += &labelled("intervals", &sources(errors, uncertainty));
+        notes.push(sources(errors, uncertainty));
     }
-    for reliance in assessment.map_or_else(Vec::new, |a| parameters::reliance(uncertainty, a)) {
-        text += &labelled("", &reliance);
-    }
+    notes.extend(assessment.map_or_else(Vec::new, |a| parameters::reliance(uncertainty, a)));
     if let Some(n) = uncertainty.estimate(Parameter::N) {
-        text += &labelled(
-            "",
-            &format!(
-                "n = {} is an effective index: it stands in for what the model lacks (the binders of \
-                 paints have 1.4 to 1.7)",
-                digits(n.value)
-            ),
-        );
+        notes.push(format!(
+            "n = {} is an effective index: it stands in for what the model lacks (the binders of \
+             paints have 1.4 to 1.7)",
+            digits(n.value)
+        ));
     }
-    text
+    notes
 }
 
 fn no_interval(uncertainty: &Uncertainty) -> Option<&str> {
@@ -419,8 +477,16 @@ fn no_interval(uncertainty: &Uncertainty) -> Option<&str> {
 /// The errors that the intervals come from.
 fn sources(errors: &ErrorSizes, uncertainty: &Uncertainty) -> String {
     let mut parts = Vec::new();
+    let all = [
+        errors.proportional_percent,
+        errors.patch_percent,
+        errors.incidence_percent.unwrap_or(0.0),
+        errors.constant_percent,
+        errors.counting_percent,
+    ];
+    let largest = all.into_iter().fold(0.0, f64::max);
     let mut part = |percent: f64, of: &str| {
-        if percent >= 0.05 {
+        if percent > 0.1 * largest {
             parts.push(format!("{} % {of}", two_digits(percent)));
         }
     };

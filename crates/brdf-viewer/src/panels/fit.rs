@@ -109,11 +109,13 @@ fn show_weights(ui: &mut Ui, weights: &mut ReadingWeights) {
     let name = |weights: &ReadingWeights| match weights {
         ReadingWeights::None => "none".to_owned(),
         ReadingWeights::Sigma => "1/sigma²".to_owned(),
+        ReadingWeights::Relative => "1/model²".to_owned(),
         ReadingWeights::SolidAngle => "solid angle".to_owned(),
     };
     let all = [
         ReadingWeights::None,
         ReadingWeights::Sigma,
+        ReadingWeights::Relative,
         ReadingWeights::SolidAngle,
     ];
     show_choice(ui, "Reading weights", weights, &all, name);

@@ -1,8 +1,8 @@
 //! The settings of the next fit.
 
 use brdf_fit::Loss;
-use brdf_fit::Weights;
 use brdf_fit::report::Depth;
+use brdf_fit::{AssumedErrors, Weights};
 use brdf_fit::{FitOptions, Method, RefractiveIndex};
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +39,8 @@ pub enum ReadingWeights {
     None,
     /// 1/sigma^2.
     Sigma,
+    /// 1/m^2 with f_r cos theta of the model, m: relative errors.
+    Relative,
     /// The solid angle that a reading represents.
     SolidAngle,
 }
@@ -110,7 +112,11 @@ impl FitSettings {
     /// The weights of the objective.
     pub fn objective_weights(&self) -> Weights {
         Weights {
-            by_sigma: self.weights == ReadingWeights::Sigma,
+            errors: match self.weights {
+                ReadingWeights::Sigma => AssumedErrors::Stated,
+                ReadingWeights::Relative => AssumedErrors::Relative,
+                ReadingWeights::None | ReadingWeights::SolidAngle => AssumedErrors::Constant,
+            },
             by_solid_angle: self.weights == ReadingWeights::SolidAngle,
             ..Weights::default()
         }

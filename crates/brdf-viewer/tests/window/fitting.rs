@@ -371,7 +371,7 @@ fn a_fit_with_weights_by_sigma_equals_that_of_the_library() {
         ..FitOptions::default()
     };
     let plain = Report::new(&scan, &options, Depth::Fit).0.fit.unwrap();
-    options.weights.by_sigma = true;
+    options.weights.errors = brdf_fit::AssumedErrors::Stated;
     check_same(&window, &Report::new(&scan, &options, Depth::Assessed).0);
     let e = report(&window).fit.unwrap().e_percent;
     assert_ne!(e, plain.e_percent);

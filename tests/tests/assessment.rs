@@ -34,7 +34,7 @@ fn the_tables_contain_intervals_cross_validation_models_and_physics() {
     for part in [
         "correlations: k2-kD",
         "leave-one-incidence-out cross-validation: rms 44 %",
-        "  three+n          3.0",
+        "  three+n         3.0 ",
         "verdict   smith+n suffices",
         "k2 and k1 rest on 70 deg",
         "reflectance rho(psi):",

@@ -226,7 +226,8 @@ fn the_band_is_the_spread_of_the_curve() {
     let squares: Vec<f64> = values.iter().map(|v| (v - centre).powi(2)).collect();
     let ratio = mean(&bands) / mean(&squares).sqrt();
     println!("band over spread: {ratio:.3}");
-    assert!((0.9..1.1).contains(&ratio), "{ratio}");
+    // The estimate of constant errors includes errors in proportion to the reading, and is larger.
+    assert!((0.9..1.4).contains(&ratio), "{ratio}");
 }
 
 /// The share of scans in which each test rejects at 1 %: growth with the reading, incidences, patches.

@@ -117,7 +117,7 @@ fn fits(c: &mut Criterion) {
             Depth::Fit,
         ),
         (
-            "the same, cross-validation, bootstrap, model hierarchy, physics",
+            "the same, cross-validation, model hierarchy, physics",
             Depth::Assessed,
         ),
         ("the same, reference models", Depth::Compared),
@@ -241,7 +241,7 @@ fn table(c: &mut Criterion) {
         ),
         (
             Depth::Assessed,
-            "the same with cross-validation, bootstrap, the model hierarchy and physics",
+            "the same with cross-validation, the model hierarchy and physics",
         ),
     ] {
         group.bench_function(name, |b| {

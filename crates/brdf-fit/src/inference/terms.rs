@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 
 use super::variance_components::{INDEPENDENT, Patch, Term, Terms, WHITE, estimate};
 use crate::fit::Solution;
+use crate::format::in_degrees;
 use crate::model::Parameter;
 use crate::scan::{Measurement, Measurements};
 
@@ -15,11 +16,11 @@ use crate::scan::{Measurement, Measurements};
 /// this.
 const SMALLEST_EIGENVALUE: f64 = 1e-12;
 
-/// The width of a patch in the plane of incidence, in radians: 20 deg.
-const PATCH: f64 = 20.0 * PI / 180.0;
+/// The width of a patch in the plane of incidence, in degrees.
+const PATCH_DEG: f64 = 20.0;
 
-/// The width of a patch in azimuth, outside the plane of incidence, in radians: 30 deg.
-const AZIMUTH_PATCH: f64 = 30.0 * PI / 180.0;
+/// The width of a patch in azimuth, outside the plane of incidence, in degrees.
+const AZIMUTH_PATCH_DEG: f64 = 30.0;
 
 /// The least expected slope of a robust loss.
 const LEAST_SLOPE: f64 = 0.05;
@@ -82,7 +83,8 @@ struct Row<const P: usize> {
     view: View,
 }
 
-/// Where the view lies, for the division into patches.
+/// Where the view lies, for the division into patches: in degrees, in which the edges of patches and
+/// the settings of a goniometer are round numbers.
 #[derive(Debug, Clone, Copy)]
 enum View {
     /// The signed angle from the mirror direction in the plane of incidence.
@@ -93,14 +95,13 @@ enum View {
 
 impl View {
     fn patch(self, grid: Grid) -> (i64, i64) {
-        #[expect(
-            clippy::cast_possible_truncation,
-            reason = "angles of a few rad are a few patches"
-        )]
+        #[expect(clippy::cast_possible_truncation, reason = "angles are a few patches")]
         let cell = |angle: f64, width: f64| (angle / width + grid.offset()).floor() as i64;
         match self {
-            Self::InPlane(angle) => (cell(angle, PATCH), 0),
-            Self::Outside(zenith, azimuth) => (cell(zenith, PATCH), cell(azimuth, AZIMUTH_PATCH)),
+            Self::InPlane(angle) => (cell(angle, PATCH_DEG), 0),
+            Self::Outside(zenith, azimuth) => {
+                (cell(zenith, PATCH_DEG), cell(azimuth, AZIMUTH_PATCH_DEG))
+            }
         }
     }
 }
@@ -112,7 +113,7 @@ fn views(readings: &[Measurement]) -> Vec<View> {
         .iter()
         .map(|reading| {
             let theta = reading.in_plane_theta()?;
-            Some(View::InPlane(theta + reading.psi))
+            Some(View::InPlane(in_degrees(theta) + in_degrees(reading.psi)))
         })
         .collect();
     in_plane.unwrap_or_else(|| readings.iter().map(outside).collect())
@@ -121,7 +122,7 @@ fn views(readings: &[Measurement]) -> Vec<View> {
 fn outside(reading: &Measurement) -> View {
     let half_turn = if reading.theta < 0.0 { PI } else { 0.0 };
     let azimuth = (reading.phi + half_turn).rem_euclid(2.0 * PI);
-    View::Outside(reading.theta.abs(), azimuth)
+    View::Outside(in_degrees(reading.theta.abs()), in_degrees(azimuth))
 }
 
 impl<const P: usize> Readings<P> {

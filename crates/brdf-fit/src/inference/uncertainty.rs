@@ -46,6 +46,9 @@ const MOST_READINGS: usize = 20_000;
 
 const NOT_DISTINGUISHED: &str = "the readings do not distinguish the parameters";
 
+const OF_TABLES: &str =
+    "the intervals are tested on scans, whose readings err by themselves, not on the bins of a table";
+
 /// The uncertainty of all free parameters of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
@@ -105,7 +108,25 @@ impl Uncertainty {
             undetermined: Undetermined::new(fitted, progress)?,
             tests,
         };
-        Ok(inference.uncertainty())
+        let uncertainty = inference.uncertainty();
+        Ok(if measurements.is_table() {
+            uncertainty.without_intervals(OF_TABLES)
+        } else {
+            uncertainty
+        })
+    }
+
+    /// The same without intervals and covariance.
+    fn without_intervals(mut self, reason: &str) -> Self {
+        for estimate in &mut self.estimates {
+            if let Knowledge::Determined { .. } = estimate.knowledge {
+                estimate.knowledge = Knowledge::NoInterval {
+                    reason: reason.to_owned(),
+                };
+            }
+        }
+        self.covariance = Vec::new();
+        self
     }
 
     fn without_covariance(fit: &Fit, knowledge: impl Fn(Parameter) -> Knowledge) -> Self {

@@ -617,6 +617,56 @@ mod tests {
         close(scores.gain.1, trace);
     }
 
+    /// Of a balanced one-way layout the estimates are those of the analysis of variance: the mean square
+    /// within groups, and that between groups less it, over the size of a group.
+    #[test]
+    fn a_balanced_layout_has_the_components_of_the_analysis_of_variance() {
+        const GROUPS: usize = 6;
+        const SIZE: usize = 10;
+        let value = |i: usize| {
+            let group = (7.0 * (i / SIZE) as f64).sin();
+            0.3 * group + 0.1 * (13.0 * i as f64).cos()
+        };
+        let row = |i: usize| Term {
+            size: 1.0,
+            residual: value(i),
+            slopes: [1.0],
+            white: [1.0, 0.0, 0.0],
+        };
+        let patch = |g: usize| Patch {
+            rows: SIZE * g..SIZE * (g + 1),
+            incidence: g,
+        };
+        let terms = Terms {
+            rows: (0..GROUPS * SIZE).map(row).collect(),
+            patches: (0..GROUPS).map(patch).collect(),
+            incidences: GROUPS,
+        };
+        let found = estimate(
+            &terms,
+            Estimated {
+                white: [true, false, false],
+                patch: false,
+                gain: true,
+                least_first: 0.0,
+            },
+        );
+        let mean = |of: &dyn Fn(usize) -> f64, over: Range<usize>| {
+            let count = over.len() as f64;
+            over.map(of).sum::<f64>() / count
+        };
+        let group = |g: usize| mean(&value, SIZE * g..SIZE * (g + 1));
+        let whole = mean(&value, 0..GROUPS * SIZE);
+        let between: f64 = (0..GROUPS).map(|g| (group(g) - whole).powi(2)).sum();
+        let between = SIZE as f64 * between / (GROUPS - 1) as f64;
+        let within: f64 = (0..GROUPS * SIZE)
+            .map(|i| (value(i) - group(i / SIZE)).powi(2))
+            .sum();
+        let within = within / (GROUPS * (SIZE - 1)) as f64;
+        near(found.white[0], within);
+        near(found.gain, (between - within) / SIZE as f64);
+    }
+
     #[test]
     fn zero_residuals_have_zero_components() {
         let mut terms = terms();

@@ -301,10 +301,11 @@ fn lowest_e_percent(
     Ok(Some(100.0 * lowest.error))
 }
 
-/// The reflectance of a fit all of whose parameters are determined: that of an arbitrary value means
-/// nothing.
+/// The reflectance of a fit that describes the sample and all of whose parameters are determined: that
+/// of an arbitrary value means nothing.
 fn reflectance_above_one(fit: &Fit, uncertainty: &Uncertainty) -> Option<Warning> {
-    if !uncertainty.estimates.iter().all(Estimate::is_determined) {
+    let is_determined = uncertainty.estimates.iter().all(Estimate::is_determined);
+    if !is_determined || Quality::of(fit) == Quality::Poor {
         return None;
     }
     let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;

@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fit, FitError, FitOptions, fit_scan};
-use crate::inference::{Assessment, Deviations, Uncertainty, Warning};
+use crate::inference::{Assessment, Deviations, Estimate, Quality, Uncertainty, Warning};
 use crate::inference::{Tests, assess_observed, sufficient_model, warnings};
-use crate::model::Model;
-use crate::progress::{NoObserver, Observer, Phase, Progress};
+use crate::model::{Model, Parameter};
+use crate::objective::weights::AssumedErrors;
+use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
 use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
 use crate::solver::Termination;
 
@@ -62,6 +63,10 @@ pub struct Report {
     /// Standard errors and confidence intervals; `None` if no parameter was fitted.
     #[serde(default)]
     pub uncertainty: Option<Uncertainty>,
+    /// By which factors the standard errors of the parameters would shrink with the weights of relative
+    /// errors, where the errors grow with the reading and the model describes the sample; else empty.
+    #[serde(default)]
+    pub gain_of_relative_weights: Vec<(Parameter, f64)>,
     /// The relative errors of the fit; `None` at [`Depth::Fit`].
     #[serde(default)]
     pub deviations: Option<Deviations>,
@@ -138,6 +143,7 @@ impl Report {
             fit: None,
             error: None,
             uncertainty: None,
+            gain_of_relative_weights: Vec::new(),
             deviations: None,
             assessment: None,
             rejected: Vec::new(),
@@ -194,6 +200,10 @@ impl Report {
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
         if depth > Depth::Fit {
             self.deviations = Deviations::of(&fitted_readings, fit);
+            if let Some(uncertainty) = &self.uncertainty {
+                self.gain_of_relative_weights =
+                    gain_of_relative_weights(measurements, fit, uncertainty, &progress)?;
+            }
             let compare = depth == Depth::Compared;
             self.assessment = Some(assess_observed(measurements, fit, compare, observer)?);
         }
@@ -223,4 +233,33 @@ impl Report {
         };
         format!("{word}{alone}")
     }
+}
+
+/// [`Report::gain_of_relative_weights`].
+fn gain_of_relative_weights(
+    measurements: &Measurements,
+    fit: &Fit,
+    uncertainty: &Uncertainty,
+    progress: &Progress<'_>,
+) -> Result<Vec<(Parameter, f64)>, Cancelled> {
+    let grows = uncertainty.tests.is_some_and(|tests| tests.grows());
+    let applies = fit.options.weights.errors == AssumedErrors::Constant
+        && fit.robust.is_none()
+        && Quality::of(fit) == Quality::Good;
+    if !(grows && applies) {
+        return Ok(Vec::new());
+    }
+    let mut options = fit.options.clone();
+    options.weights.errors = AssumedErrors::Relative;
+    let fitted = match fit_scan(measurements, &options, progress) {
+        Ok(fitted) => fitted,
+        Err(FitError::Cancelled) => return Err(Cancelled),
+        Err(_) => return Ok(Vec::new()),
+    };
+    let relative = Uncertainty::of_fit(measurements, &fitted, Tests::Omitted, progress)?;
+    let gain = |estimate: &Estimate| {
+        let other = relative.estimate(estimate.parameter)?.standard_error()?;
+        Some((estimate.parameter, estimate.standard_error()? / other))
+    };
+    Ok(uncertainty.estimates.iter().filter_map(gain).collect())
 }

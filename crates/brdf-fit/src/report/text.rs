@@ -75,7 +75,8 @@ impl Report {
         }
         if let Some(uncertainty) = &self.uncertainty {
             sections.push(("parameters", parameters_section(uncertainty, assessment)));
-            sections.push(("noise", noise_lines(uncertainty)));
+            let noise = noise_lines(uncertainty) + &self.gain_line();
+            sections.push(("noise", noise));
         }
         if let (Some(fit), Some(assessment)) = (&self.fit, assessment) {
             sections.push(("verdict", verdict_lines(fit, assessment)));
@@ -162,6 +163,24 @@ impl Report {
             );
         }
         text
+    }
+
+    /// How much better weights of relative errors would determine the parameters.
+    fn gain_line(&self) -> String {
+        let gains: Vec<String> = self
+            .gain_of_relative_weights
+            .iter()
+            .filter(|(_, gain)| *gain > 1.1)
+            .map(|(parameter, gain)| format!("{parameter} {} times", two_digits(*gain)))
+            .collect();
+        if gains.is_empty() {
+            return String::new();
+        }
+        let gains = parameters::listed(&gains);
+        labelled(
+            "",
+            &format!("weights of relative errors would determine the parameters better: {gains}"),
+        )
     }
 
     fn heading(&self) -> String {
@@ -618,7 +637,7 @@ fn verdict_lines(fit: &Fit, assessment: &Assessment) -> String {
                 .filter_map(|candidate| candidate.relative_prediction.as_ref())
                 .map(|own| {
                     format!(
-                        "; {}, within {} %",
+                        "; {} predicts within {} %",
                         fit.model(),
                         two_digits(own.within_percent())
                     )

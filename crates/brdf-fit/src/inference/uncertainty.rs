@@ -46,8 +46,7 @@ const MOST_READINGS: usize = 20_000;
 
 const NOT_DISTINGUISHED: &str = "the readings do not distinguish the parameters";
 
-const OF_TABLES: &str =
-    "the intervals are tested on scans, whose readings err by themselves, not on the bins of a table";
+const OF_TABLES: &str = "the intervals are tested on scans, whose readings err by themselves, not on the bins of a table";
 
 /// The uncertainty of all free parameters of a fit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

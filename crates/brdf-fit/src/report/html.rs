@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::run::Report;
 use super::table::{Column, Row, Table, escaped};
-use super::text::{fit_options, parameters_notes, refractive_index};
+use super::text::{fit_options, parameters_notes, refractive_index, verdict_sentence};
 use super::{incidences, models, parameters, stages};
 use crate::fit::Fit;
 use crate::format::{counted, two_digits};
@@ -86,8 +86,8 @@ fn section(report: &Report, pictures: &[Picture<'_>]) -> String {
         text += &quality(report, fit);
     }
     let assessment = report.assessment.as_ref();
-    if let Some(verdict) = assessment.and_then(|assessment| assessment.verdict.as_ref()) {
-        let verdict = escaped(&verdict.to_string());
+    if let (Some(fit), Some(assessment)) = (&report.fit, assessment) {
+        let verdict = escaped(&verdict_sentence(fit, assessment));
         let _ = writeln!(text, "<p><strong>Verdict:</strong> {verdict}.</p>");
     }
     for warning in &report.warnings {
@@ -106,7 +106,8 @@ fn section(report: &Report, pictures: &[Picture<'_>]) -> String {
     }
     if let Some(uncertainty) = &report.uncertainty {
         let mut table = parameters::table(uncertainty, assessment);
-        table.notes = parameters_notes(uncertainty, assessment);
+        let notes = parameters_notes(uncertainty, assessment);
+        table.notes = notes.iter().map(|note| sentence(note)).collect();
         text += &table.html();
     }
     if let Some(fit) = &report.fit {
@@ -144,6 +145,14 @@ fn quality(report: &Report, fit: &Fit) -> String {
         );
     }
     text + ".</p>\n"
+}
+
+/// A clause about the intervals as a sentence.
+fn sentence(clause: &str) -> String {
+    match clause.strip_prefix("from ") {
+        Some(errors) => format!("The intervals come from {errors}."),
+        None => format!("{}.", capitalised(clause)),
+    }
 }
 
 fn capitalised(word: &str) -> String {

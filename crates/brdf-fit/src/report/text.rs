@@ -462,7 +462,7 @@ fn parameters_section(uncertainty: &Uncertainty, assessment: Option<&Assessment>
     format!("\n{table}{}", notes.collect::<String>())
 }
 
-/// What the intervals come from, and what the parameters rest on, as sentences.
+/// What the intervals come from, and what the parameters rest on, as clauses.
 pub(super) fn parameters_notes(
     uncertainty: &Uncertainty,
     assessment: Option<&Assessment>,
@@ -626,27 +626,24 @@ fn significance(p: f64) -> String {
 
 /// The verdict on the models.
 fn verdict_lines(fit: &Fit, assessment: &Assessment) -> String {
-    let sentence = match &assessment.verdict {
-        Some(verdict) => {
-            let others = assessment
-                .models
-                .iter()
-                .filter(|candidate| {
-                    Some(candidate.model) != verdict.model && candidate.model == fit.model()
-                })
-                .filter_map(|candidate| candidate.relative_prediction.as_ref())
-                .map(|own| {
-                    format!(
-                        "; {} predicts within {} %",
-                        fit.model(),
-                        two_digits(own.within_percent())
-                    )
-                });
-            format!("{verdict}{}", others.collect::<String>())
-        }
-        None => "none: too few incidences to predict one from the others".to_owned(),
+    labelled("verdict", &verdict_sentence(fit, assessment))
+}
+
+/// The verdict, and how well the fitted model predicts where it is another.
+pub(super) fn verdict_sentence(fit: &Fit, assessment: &Assessment) -> String {
+    let Some(verdict) = &assessment.verdict else {
+        return "none: too few incidences to predict one from the others".to_owned();
     };
-    labelled("verdict", &sentence)
+    let mut models = assessment.models.iter();
+    let own = models
+        .find(|candidate| candidate.model == fit.model())
+        .filter(|candidate| Some(candidate.model) != verdict.model)
+        .and_then(|candidate| candidate.relative_prediction.as_ref());
+    let own = own.map_or_else(String::new, |own| {
+        let within = two_digits(own.within_percent());
+        format!("; {} predicts within {within} %", fit.model())
+    });
+    format!("{verdict}{own}")
 }
 
 /// The correlations of the parameters.

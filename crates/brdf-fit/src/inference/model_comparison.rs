@@ -115,7 +115,7 @@ pub(super) fn compare(
     Ok((candidates, left_out))
 }
 
-/// The model of the hierarchy that suffices for a scan, see [`Verdict`]; the paper's model where
+/// The model of the hierarchy that suffices for a scan, see [`Verdict`](super::Verdict); the paper's model where
 /// nothing can be predicted. Each step is reported to `observer`, which may cancel.
 pub(crate) fn sufficient_model(
     measurements: &Measurements,

@@ -66,7 +66,7 @@ pub(super) struct Patch {
 /// The components of the variance, relative to the mean square of the model's values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Components {
-    /// Those of independent errors, one for each of [`Terms::white`].
+    /// Those of independent errors, one for each of [`Term::white`].
     pub(super) white: [f64; WHITE],
     /// t4, common to the readings of a patch.
     pub(super) patch: f64,

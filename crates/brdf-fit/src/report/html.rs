@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use super::run::Report;
+use super::sentences::{fit_options, parameters_notes, refractive_index, verdict_sentence};
 use super::table::{Column, Row, Table, escaped};
-use super::text::{fit_options, parameters_notes, refractive_index, verdict_sentence};
 use super::{incidences, models, parameters, stages};
 use crate::fit::Fit;
 use crate::format::{counted, two_digits};

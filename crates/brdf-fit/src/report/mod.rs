@@ -2,12 +2,15 @@
 //! a JSON document, and the parameters and curves as CSV.
 
 mod csv;
+mod details;
 mod document;
 mod html;
 mod incidences;
+mod layout;
 mod models;
 mod parameters;
 mod run;
+mod sentences;
 mod stages;
 mod summary;
 mod table;

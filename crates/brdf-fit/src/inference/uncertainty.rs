@@ -97,13 +97,19 @@ impl Uncertainty {
         }
         let fitted_readings = fit.options.fitted_readings(measurements);
         let share = Share::of(&fitted_readings, fitted);
-        let (scan, solution) = share.as_ref().map_or((&*fitted_readings, fitted), |share| {
-            (&share.scan, &share.solution)
-        });
+        // The rows of the objective of a fit name readings of the whole scan.
+        let (scan, solution, part) = match &share {
+            None => (measurements, fitted, 1.0),
+            Some(share) => {
+                let count = share.scan.readings().len() as f64;
+                let part = count / fitted_readings.readings().len() as f64;
+                (&share.scan, &share.solution, part)
+            }
+        };
         let inference = Inference {
             scan,
             fitted: solution,
-            share: scan.readings().len() as f64 / fitted_readings.readings().len() as f64,
+            share: part,
             undetermined: Undetermined::new(fitted, progress)?,
             tests,
         };
@@ -650,6 +656,32 @@ mod tests {
                 let variance = uncertainty.covariance[i][i];
                 assert!((variance.sqrt() / error - 1.0).abs() < 1e-12);
             }
+        }
+    }
+
+    /// The incidences of a file come in any order, and a fit of some of them has their intervals.
+    #[test]
+    fn the_intervals_of_stage_1_alone_are_those_of_its_readings() {
+        let scan = rippled([0.3, 0.1, 0.2], 1.5, 0.03);
+        let mut readings = scan.readings().to_vec();
+        readings.reverse();
+        let scan = Measurements::new("test", readings).unwrap();
+        let alone = FitOptions {
+            stage2: None,
+            ..options()
+        };
+        let intervals = |scan: &Measurements, options: &FitOptions| {
+            let fitted = fit_scan(scan, options, &NoObserver).unwrap();
+            let progress = Progress::new(&NoObserver, Phase::Uncertainty);
+            let found = Uncertainty::of_fit(scan, &fitted, Tests::Omitted, &progress).unwrap();
+            let ends = found.estimates.iter().map(|e| e.interval_95().to.unwrap());
+            ends.collect::<Vec<f64>>()
+        };
+        let some = scan.up_to(alone.stage1_limit);
+        assert!(some.readings().len() < scan.readings().len());
+        let found = intervals(&scan, &alone);
+        for (found, expected) in found.iter().zip(intervals(&some, &options())) {
+            assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
         }
     }
 

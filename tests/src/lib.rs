@@ -52,6 +52,11 @@ pub fn run_fit<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Outpu
         .expect("the program starts")
 }
 
+/// A text with single blanks between its words: sentences of a report without their line breaks.
+pub fn unwrapped(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 /// Runs a command with this text as its standard input.
 pub fn run_with_input(command: &mut Command, input: &[u8]) -> Output {
     let mut child = command

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use brdf_fit::format::two_digits;
 use brdf_fit::report::{Depth, Report, model_table};
-use brdf_fit::{Assessment, Candidate, rests_on};
+use brdf_fit::{Assessment, Candidate, rests_on, rms_percent};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
 use rayon::prelude::*;
 
@@ -112,7 +112,7 @@ fn remarks(assessment: &Assessment) -> String {
         ("Lowest predicted rms error", predicted),
     ] {
         if let Some((model, e)) = best {
-            let rms = two_digits(10.0 * e.sqrt());
+            let rms = two_digits(rms_percent(e));
             let _ = writeln!(text, "- {name}: {model}, {rms} %.");
         }
     }

@@ -184,7 +184,7 @@ fn masks_and_solid_angles_weigh_the_readings() {
         "--weights",
         "solid-angle",
     ]);
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = brdf_tests::unwrapped(&text);
     assert!(text.contains(
         "readings weighted by solid angle, 0 within 12 deg of the source, 0 within 2 deg of the mirror direction"
     ));

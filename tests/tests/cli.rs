@@ -279,7 +279,7 @@ fn another_convention_gives_the_same_fit() {
     let forward = "theta positive on the side of the mirror direction";
     let words = |output: &Output| {
         let text = stdout(output);
-        text.split_whitespace().collect::<Vec<_>>().join(" ")
+        brdf_tests::unwrapped(&text)
     };
     assert!(words(&told).contains(forward));
     // What is fitted again is read again as it was.
@@ -549,7 +549,7 @@ fn what_is_odd_about_the_readings_is_counted_and_kept() {
     ]);
     succeeded(&output);
     let text = stdout(&output);
-    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = brdf_tests::unwrapped(&text);
     for expected in [
         "wavelength not stated, n = 1.5, 9 readings",
         "1 reading below zero, kept",

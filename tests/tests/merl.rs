@@ -174,7 +174,7 @@ fn the_report_says_how_a_table_is_read() {
         "MERL table, blue assigned to 0.464 um",
         "read 500 of 1096216 readings, evenly over theta_h, theta_d and phi_d",
     ] {
-        let printed = printed.split_whitespace().collect::<Vec<_>>().join(" ");
+        let printed = brdf_tests::unwrapped(&printed);
         assert!(printed.contains(said), "{printed}");
     }
 }

@@ -61,7 +61,7 @@ pub use fit::robust::{Loss, REJECTED, Rejected, RobustFit};
 pub use fit::start::{InitialValues, WeightsRoute, WidthRoute};
 pub use fit::{
     FORMAT_VERSION, Fit, FitError, FitOptions, FitProblem, GlobalCheck, OwnAndAll, Stage, fit,
-    fit_observed,
+    fit_observed, rms_percent,
 };
 pub use format::ParseError;
 pub use inference::{

@@ -14,13 +14,14 @@ mod problem;
 pub(crate) mod relative;
 mod result;
 pub(crate) mod robust;
+mod solution;
 pub(crate) mod start;
 
 pub use error::FitError;
 pub use options::FitOptions;
 pub use problem::FitProblem;
-pub(crate) use problem::Solution;
-pub use result::{FORMAT_VERSION, Fit, GlobalCheck, OwnAndAll, Stage};
+pub use result::{FORMAT_VERSION, Fit, GlobalCheck, OwnAndAll, Stage, rms_percent};
+pub(crate) use solution::Solution;
 
 use crate::progress::{NoObserver, Observer};
 use crate::scan::Measurements;

@@ -15,6 +15,7 @@ use super::options::FitOptions;
 use super::relative::{RelativeFit, fit_relatively};
 use super::result::{FORMAT_VERSION, Fit, OwnAndAll, Stage};
 use super::robust::{RobustFit, RobustWeights, fit_robustly};
+use super::solution::{Searched, Solution};
 use super::start::{InitialValues, initial_values};
 use crate::format::{counted, in_degrees};
 use crate::model::{DEFAULT_N, FixedParameters, Parameter, ReducedModel};
@@ -48,69 +49,6 @@ struct FirstStage {
     objective: Option<Objective>,
     /// Why stage 1 is left out although the options ask for it.
     left_out: Option<String>,
-}
-
-/// A solved problem, with the objects that further inference starts from.
-#[derive(Debug)]
-pub(crate) struct Solution {
-    pub(crate) fit: Fit,
-    /// The objective that was minimised, with the weights of relative errors and of a robust loss.
-    pub(crate) objective: Objective,
-    /// The last grid search; `None` where the check was left out.
-    search: Option<Searched>,
-    /// The weights of a robust loss.
-    robust: Option<RobustWeights>,
-}
-
-/// A grid search, and its objective where that is not the one of the solution.
-#[derive(Debug)]
-struct Searched {
-    search: GridSearch,
-    objective: Option<Objective>,
-}
-
-impl Solution {
-    /// The grid search of the fit, or a new one where the check was left out.
-    pub(crate) fn grid_search(&self, progress: &Progress<'_>) -> Result<GridSearch, Cancelled> {
-        let new = || GridSearch::new(&self.objective, self.fit.options.reduced_model(), progress);
-        let search = self.search.as_ref().map(|searched| searched.search.clone());
-        search.map_or_else(new, Ok)
-    }
-
-    /// The objective of [`grid_search`](Self::grid_search).
-    pub(crate) fn searched(&self) -> &Objective {
-        let searched = self.search.as_ref();
-        let own = searched.and_then(|searched| searched.objective.as_ref());
-        own.unwrap_or(&self.objective)
-    }
-
-    /// The objective without the weights of a robust loss.
-    pub(crate) fn without_loss(&self) -> &Objective {
-        let robust = self.robust.as_ref();
-        robust.map_or(&self.objective, |robust| &robust.objective)
-    }
-
-    /// The weights of a robust loss, one for each row.
-    pub(crate) fn robust(&self) -> Option<&RobustWeights> {
-        self.robust.as_ref()
-    }
-
-    /// The same fit with the objective of some of its readings, one row for each.
-    pub(crate) fn over(&self, measurements: &Measurements) -> Result<Self, FitError> {
-        let fit = self.fit.clone();
-        let weights = &fit.options.weights;
-        let family = fit.model().family();
-        let mut objective = Objective::new(measurements, family, fit.n, weights)?;
-        if weights.errors == AssumedErrors::Relative {
-            objective = objective.relative(Some(&fit.at()))?;
-        }
-        Ok(Self {
-            fit,
-            objective,
-            search: None,
-            robust: None,
-        })
-    }
 }
 
 impl<'a> FitProblem<'a> {

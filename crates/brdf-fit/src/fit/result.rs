@@ -114,6 +114,11 @@ pub struct GlobalCheck {
     pub seconds: f64,
 }
 
+/// The rms error over the rms reading, sqrt(E), in percent, from E in percent.
+pub fn rms_percent(e_percent: f64) -> f64 {
+    10.0 * e_percent.max(0.0).sqrt()
+}
+
 impl Fit {
     /// All parameters of the model.
     pub fn at(&self) -> ModelParameters {
@@ -130,7 +135,7 @@ impl Fit {
 
     /// The rms error over the rms reading, both of f_r cos theta, in percent: sqrt(E).
     pub fn rms_percent(&self) -> f64 {
-        10.0 * self.e_percent.max(0.0).sqrt()
+        rms_percent(self.e_percent)
     }
 
     /// [`rms_percent`](Self::rms_percent) over the readings that a robust loss does not reject.
@@ -139,7 +144,7 @@ impl Fit {
             .robust
             .as_ref()
             .and_then(|robust| robust.accepted_e_percent);
-        10.0 * accepted.unwrap_or(self.e_percent).max(0.0).sqrt()
+        rms_percent(accepted.unwrap_or(self.e_percent))
     }
 
     /// The last stage.

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! terms, variance_components -> noise --------+
-//! undetermined -------------------------------+-> uncertainty --+
+//! spread, undetermined ------------------------+-> uncertainty --+
 //! refit -> cross_validation, sensitivity -----------------------+-> model_comparison -> verdict
 //! physics ------------------------------------------------------+-> assessment, warning
 //! ```
@@ -20,6 +20,7 @@ mod model_comparison;
 mod noise;
 mod physics;
 mod refit;
+mod spread;
 mod terms;
 #[cfg(test)]
 mod test_scans;

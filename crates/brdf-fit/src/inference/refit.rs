@@ -1,5 +1,7 @@
 //! Fits of a scan without some of its incidences, for its sensitivity and for cross-validation.
 
+use std::borrow::Cow;
+
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +22,7 @@ pub(super) struct Refitter<'a> {
     at: ModelParameters,
     /// The grid search, whose sums for each fold of the incidences give the lowest grid point of
     /// any choice of folds.
-    search: GridSearch,
+    search: Cow<'a, GridSearch>,
     model: ReducedModel,
     progress: &'a Progress<'a>,
 }
@@ -50,7 +52,7 @@ impl<'a> Refitter<'a> {
         Ok(Self {
             objective,
             at: polished.unwrap_or(lowest),
-            search,
+            search: Cow::Owned(search),
             model,
             progress,
         })

@@ -19,21 +19,17 @@
 
 use brdf_core::{AnyBrdf, Geometry, ModelParameters};
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::estimate::{Estimate, Interval, Knowledge};
 use super::noise::{ErrorSizes, Noise, NoiseTests};
+use super::spread::{GridSpread, UPPER_95, quantile};
 use super::terms::{Grid, Readings, Source};
 use super::undetermined::{Undetermined, has_effect, is_on_bound};
-use super::variance_components::{Components, Estimated, Terms, WHITE, estimate};
 use crate::fit::{Fit, Solution};
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::weights::AssumedErrors;
 use crate::progress::{Cancelled, Progress};
 use crate::scan::Measurements;
-
-/// The probability below the upper end of an interval of 95 %.
-const UPPER_95: f64 = 0.975;
 
 /// The probability below the upper end of an interval of 68 %: one standard deviation.
 const UPPER_68: f64 = 0.841_344_746_068_543;
@@ -350,14 +346,15 @@ impl Inference<'_> {
         let by_grid = Grid::BOTH.map(|grid| GridSpread::new(&readings, grid, source, self.share));
         let widths: Vec<Width> = (0..P)
             .map(|i| {
-                let [a, b] = by_grid.each_ref().map(|spread| spread.half_width(i));
-                let wider = &by_grid[usize::from(b > a)];
-                wider.width(i, a.max(b), self.constant_noise(readings.bread[i][i], P))
+                let [a, b] = &by_grid;
+                let wider = if b.half_95[i] > a.half_95[i] { b } else { a };
+                let bread = readings.bread[i][i];
+                Width::new(wider, i, bread, self.constant_noise(bread, P))
             })
             .collect();
         // The covariance has the correlations of the grid that makes the intervals wider on the whole.
         let log_width =
-            |spread: &GridSpread<P>| -> f64 { (0..P).map(|i| spread.half_width(i).ln()).sum() };
+            |spread: &GridSpread<P>| -> f64 { spread.half_95.iter().map(|half| half.ln()).sum() };
         let ruling = &by_grid[usize::from(log_width(&by_grid[1]) > log_width(&by_grid[0]))];
         let covariance = (0..P)
             .map(|i| {
@@ -460,6 +457,23 @@ pub(super) struct Width {
 }
 
 impl Width {
+    fn new<const P: usize>(
+        spread: &GridSpread<P>,
+        i: usize,
+        bread: f64,
+        half_constant_noise: f64,
+    ) -> Self {
+        let (standard_error, half_95) = (spread.standard_error(i), spread.half_95[i]);
+        Self {
+            standard_error,
+            degrees_of_freedom: spread.degrees[i],
+            half_68: quantile(UPPER_68, spread.degrees[i]) * standard_error,
+            half_95,
+            half_constant_noise,
+            growth_95: half_95 * half_95 / bread,
+        }
+    }
+
     fn around(&self, parameter: Parameter, value: f64, profile: &Undetermined) -> Knowledge {
         let interval_95 = interval(parameter, value, self.half_95);
         Knowledge::Determined {
@@ -490,123 +504,6 @@ fn interval(parameter: Parameter, value: f64, half: f64) -> Interval {
         from: Some(from),
         to: Some(to).filter(|to| to.is_finite()),
     }
-}
-
-/// The quantile of Student's t.
-fn quantile(probability: f64, degrees_of_freedom: f64) -> f64 {
-    // Beyond this the normal distribution is the same to four digits, and the quantile of t is not
-    // computed accurately.
-    let degrees = degrees_of_freedom.clamp(1.0, 1e5);
-    StudentsT::new(0.0, 1.0, degrees).map_or(f64::NAN, |t| t.inverse_cdf(probability))
-}
-
-/// The spread of parameters with the patches of one grid.
-struct GridSpread<const P: usize> {
-    components: Components,
-    covariance: [[f64; P]; P],
-    degrees: [f64; P],
-    bread: [f64; P],
-}
-
-impl<const P: usize> GridSpread<P> {
-    fn new(readings: &Readings<P>, grid: Grid, source: Source, share: f64) -> Self {
-        let (terms, influence) = readings.sorted(grid);
-        let estimated = match source {
-            Source::Residuals => Estimated {
-                white: [true; WHITE],
-                patch: true,
-                gain: readings.full_incidences > 1,
-                least_first: 0.0,
-            },
-            Source::Stated => Estimated {
-                white: [true, false, false],
-                patch: true,
-                gain: readings.full_incidences > 1,
-                least_first: 1.0,
-            },
-        };
-        let components = estimate(&terms, estimated);
-        let parts = parts(&terms, &influence, &components, share);
-        let count = readings.count() as f64 / share;
-        let patches = terms.patches.len() as f64;
-        let free = [
-            count - patches - P as f64,
-            patches - readings.incidences as f64,
-            readings.full_incidences as f64 - 1.0,
-        ]
-        .map(|degrees| degrees.max(1.0));
-        let squared_rms = readings.rms * readings.rms;
-        let degrees = std::array::from_fn(|i| {
-            let variances = [0, 1, 2].map(|part| parts[part][i][i]);
-            let sum: f64 = variances.iter().sum();
-            let terms = variances.iter().zip(free).map(|(v, nu)| v * v / nu);
-            (sum * sum / terms.sum::<f64>()).max(1.0)
-        });
-        let covariance = std::array::from_fn(|i| {
-            std::array::from_fn(|j| squared_rms * parts.iter().map(|part| part[i][j]).sum::<f64>())
-        });
-        Self {
-            components,
-            covariance,
-            degrees,
-            bread: std::array::from_fn(|i| readings.bread[i][i]),
-        }
-    }
-
-    fn half_width(&self, i: usize) -> f64 {
-        quantile(UPPER_95, self.degrees[i]) * self.covariance[i][i].sqrt()
-    }
-
-    fn width(&self, i: usize, half_95: f64, half_constant_noise: f64) -> Width {
-        let standard_error = self.covariance[i][i].sqrt();
-        Width {
-            standard_error,
-            degrees_of_freedom: self.degrees[i],
-            half_68: quantile(UPPER_68, self.degrees[i]) * standard_error,
-            half_95,
-            half_constant_noise,
-            growth_95: half_95 * half_95 / self.bread[i],
-        }
-    }
-}
-
-/// The covariance of the parameters by independent errors, by those of patches and by those of
-/// incidences, in units of the squared rms of the model's values. `share` is the share of the readings
-/// that stand for all: independent errors average over all of them.
-fn parts<const P: usize>(
-    terms: &Terms<P>,
-    influence: &[[f64; P]],
-    components: &Components,
-    share: f64,
-) -> [[[f64; P]; P]; 3] {
-    let mut parts = [[[0.0; P]; P]; 3];
-    let add = |part: &mut [[f64; P]; P], factor: f64, a: &[f64; P]| {
-        for i in 0..P {
-            for j in 0..P {
-                part[i][j] += factor * a[i] * a[j];
-            }
-        }
-    };
-    let mut incidences = vec![[0.0; P]; terms.incidences];
-    for patch in &terms.patches {
-        let mut sum = [0.0; P];
-        for i in patch.rows.clone() {
-            let (row, a) = (&terms.rows[i], &influence[i]);
-            let variance: f64 = (0..WHITE).map(|k| components.white[k] * row.white[k]).sum();
-            add(&mut parts[0], variance * share, a);
-            for c in 0..P {
-                sum[c] += row.size * a[c];
-            }
-        }
-        add(&mut parts[1], components.patch, &sum);
-        for c in 0..P {
-            incidences[patch.incidence][c] += sum[c];
-        }
-    }
-    for sum in &incidences {
-        add(&mut parts[2], components.gain, sum);
-    }
-    parts
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use super::estimate::{Estimate, Knowledge};
 use super::noise::Noise;
 use super::physics::violation_deg;
 use super::uncertainty::Uncertainty;
-use crate::fit::{Fit, FitOptions, FitProblem, Solution};
+use crate::fit::{Fit, FitOptions, FitProblem, Solution, rms_percent};
 use crate::format::{counted, two_digits};
 use crate::model::{Model, Parameter};
 use crate::progress::{Cancelled, Progress};
@@ -132,13 +132,13 @@ impl fmt::Display for Warning {
             Self::NotDescribed { e_percent } => write!(
                 f,
                 "the model does not describe this sample: its rms error is {:.0} % of the rms reading",
-                10.0 * e_percent.sqrt()
+                rms_percent(*e_percent)
             ),
             Self::ThetaReversed { e_percent } => write!(
                 f,
                 "with the sign of theta reversed the rms error would be {} %: the file seems to count \
                  the forward side positive",
-                two_digits(10.0 * e_percent.sqrt())
+                two_digits(rms_percent(*e_percent))
             ),
             Self::ReflectanceAboveOne { psi_deg } => write!(
                 f,

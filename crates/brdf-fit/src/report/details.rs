@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 use brdf_core::Parameters;
 
 use super::{incidences, models, stages};
-use crate::fit::Fit;
 use crate::fit::robust::REJECTED;
+use crate::fit::{Fit, rms_percent};
 use crate::format::{counted, digits, in_degrees, shortest, two_digits};
 use crate::inference::{Assessment, Deviations, Physics, Uncertainty};
 use crate::model::{K1_RANGE, Parameter};
@@ -186,7 +186,7 @@ pub(super) fn cross_validation_lines(fit: &Fit, assessment: &Assessment) -> Stri
             "\n  the {incidences} incidences are left out several at a time, in {MOST_FOLDS} folds"
         );
     }
-    let rms = |e_percent: f64| two_digits(10.0 * e_percent.sqrt());
+    let rms = |e_percent: f64| two_digits(rms_percent(e_percent));
     let _ = match &assessment.cross_validation {
         Some(prediction) => writeln!(
             text,

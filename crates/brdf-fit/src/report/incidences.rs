@@ -1,7 +1,7 @@
 //! The error of each incidence as a table.
 
 use super::table::{Column, Row, Table};
-use crate::fit::Fit;
+use crate::fit::{Fit, rms_percent};
 use crate::format::two_digits;
 use crate::inference::Assessment;
 use crate::inference::{CrossValidation, Deviations};
@@ -21,7 +21,7 @@ fn or_dash(percent: Option<f64>, format: impl Fn(f64) -> String) -> String {
 
 /// The rms error of an E in percent.
 fn rms(e_percent: f64) -> String {
-    two_digits(10.0 * e_percent.sqrt())
+    two_digits(rms_percent(e_percent))
 }
 
 /// The median relative error of an incidence.

@@ -1,6 +1,7 @@
 //! The compared models as a table.
 
 use super::table::{Column, Row, Table};
+use crate::fit::rms_percent;
 use crate::format::two_digits;
 use crate::inference::{Assessment, Candidate};
 use crate::model::Parameter;
@@ -69,7 +70,7 @@ const ERRORS: [&str; 3] = ["rms %", "predicted rms %", "predicts %"];
 /// relative error of that prediction by fits of relative errors.
 fn errors(candidate: &Candidate) -> [String; 3] {
     let dash = || "-".to_owned();
-    let rms = |e_percent: f64| two_digits(10.0 * e_percent.sqrt());
+    let rms = |e_percent: f64| two_digits(rms_percent(e_percent));
     let relative = candidate.relative_prediction.as_ref();
     let predicts = relative.filter(|prediction| !prediction.incidences.is_empty());
     [

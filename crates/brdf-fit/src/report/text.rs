@@ -10,7 +10,7 @@ use super::run::Report;
 use super::sentences::{
     fit_options, noise_clauses, parameters_notes, refractive_index, verdict_sentence,
 };
-use crate::fit::Fit;
+use crate::fit::{Fit, rms_percent};
 use crate::format::{counted, digits, rounded, two_digits};
 use crate::inference::{Assessment, Quality, Uncertainty, Warning};
 use crate::model::Model;
@@ -155,7 +155,7 @@ impl Report {
                 "",
                 &format!(
                     "fitted with weights of relative errors; E is least, rms {} %, at k2 {}, kD {}, k1 {}",
-                    two_digits(10.0 * relative.least_squares_e_percent.sqrt()),
+                    two_digits(rms_percent(relative.least_squares_e_percent)),
                     digits(relative.least_squares.k2),
                     digits(relative.least_squares.kd),
                     digits(relative.least_squares.k1)

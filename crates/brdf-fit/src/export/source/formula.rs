@@ -78,6 +78,7 @@ fn functions(text: &'static str) -> impl Iterator<Item = Function> {
 fn function(text: &'static str) -> Function {
     let (comment, code): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with('#'));
     let head = code.first().copied().unwrap_or_default();
+    // Embedded text, which the tests of the sources parse.
     let (name, rest) = head["fn ".len()..]
         .split_once('(')
         .expect("a formula has parameters");
@@ -107,6 +108,7 @@ fn statement(line: &'static str) -> Statement {
     if line.starts_with('#') {
         return Statement::Comment(without_mark(line));
     }
+    // Embedded text, which the tests of the sources parse.
     let (keyword, rest) = line.split_once(' ').expect("a line is a statement");
     match (keyword, rest.split_once(" = ")) {
         ("let", Some((name, value))) => Statement::Let(name, parse(value)),

@@ -55,7 +55,8 @@ impl Objective {
             shape: &mut Vec<f64>,
         ) {
             shape.clear();
-            shape.extend((0..objective.len()).map(|i| objective.shape(facet, shadowing, i)));
+            let rows = objective.angles.iter().zip(&objective.shadowed);
+            shape.extend(rows.map(|row| shape_of(facet, shadowing, row)));
         }
         match self.family {
             Family::Paper => fill(self, Ellipsoid::new(k1), VGroove, shape),
@@ -63,39 +64,6 @@ impl Objective {
             Family::Power => fill(self, Power::new(k1, p), VGroove, shape),
             Family::Ggx => fill(self, Ggx::new(k1), Smith::new(k1), shape),
             Family::Beckmann => fill(self, Beckmann::new(k1), VGroove, shape),
-        }
-    }
-
-    #[inline]
-    fn shape<F: FacetDistribution, S: Shadowing>(&self, facet: F, shadowing: S, i: usize) -> f64 {
-        let angles = &self.angles[i];
-        let shape = self.shadowed[i] * facet.relative(angles.tan2_alpha, angles.sec_alpha);
-        if S::DEPENDS_ON_WIDTH {
-            let (psi, theta) = (angles.cos_psi, angles.cos_theta);
-            shape * shadowing.over_cosines(psi, theta, angles.tan2_alpha)
-        } else {
-            shape
-        }
-    }
-
-    #[inline]
-    fn shape_by_k1<F: FacetDistribution, S: Shadowing>(
-        &self,
-        facet: F,
-        shadowing: S,
-        i: usize,
-    ) -> f64 {
-        let angles = &self.angles[i];
-        let (t, sec) = (angles.tan2_alpha, angles.sec_alpha);
-        let slope = facet.derivative_k1(t, sec);
-        if S::DEPENDS_ON_WIDTH {
-            let (psi, theta) = (angles.cos_psi, angles.cos_theta);
-            let by_facet = slope * shadowing.over_cosines(psi, theta, t);
-            let by_shadowing =
-                facet.relative(t, sec) * shadowing.over_cosines_derivative_k1(psi, theta, t);
-            self.shadowed[i] * (by_facet + by_shadowing)
-        } else {
-            self.shadowed[i] * slope
         }
     }
 
@@ -147,34 +115,31 @@ impl Objective {
             let range = start..(start + BLOCK).min(rows.end);
             block.load(&self.measured[range.clone()], &self.diffuse[range.clone()]);
             self.fill_fresnel(&dielectric, range.clone(), &mut fresnel);
-            for (j, i) in range.clone().enumerate() {
-                block.u[j] = self.shape(facet, shadowing, i) * fresnel[j];
+            let rows = || {
+                let angles = self.angles[range.clone()].iter();
+                fresnel
+                    .iter()
+                    .zip(angles.zip(&self.shadowed[range.clone()]))
+            };
+            for (u, (fresnel, row)) in block.u.iter_mut().zip(rows()) {
+                *u = shape_of(facet, shadowing, row) * fresnel;
             }
+            let [u_by_k1, u_by_n, u_by_p] = &mut block.by;
             if by_k1 {
-                for (j, i) in range.clone().enumerate() {
-                    block.by[0][j] = self.shape_by_k1(facet, shadowing, i) * fresnel[j];
+                for (slope, (fresnel, row)) in u_by_k1.iter_mut().zip(rows()) {
+                    *slope = shape_by_k1(facet, shadowing, row) * fresnel;
                 }
             }
             if by_n {
-                for (j, i) in range.clone().enumerate() {
-                    let Angles {
-                        cos_gamma,
-                        sin2_gamma,
-                        ..
-                    } = self.angles[i];
-                    let slope = dielectric.relative_derivative_n(cos_gamma, sin2_gamma);
-                    block.by[1][j] = self.shape(facet, shadowing, i) * slope;
+                for (slope, (_, row)) in u_by_n.iter_mut().zip(rows()) {
+                    let by_n = dielectric.relative_derivative_n(row.0.cos_gamma, row.0.sin2_gamma);
+                    *slope = shape_of(facet, shadowing, row) * by_n;
                 }
             }
             if by_p {
-                for (j, i) in range.clone().enumerate() {
-                    let Angles {
-                        tan2_alpha,
-                        sec_alpha,
-                        ..
-                    } = self.angles[i];
-                    let slope = facet.derivative_p(tan2_alpha, sec_alpha);
-                    block.by[2][j] = self.shadowed[i] * slope * fresnel[j];
+                for (slope, (fresnel, (angles, shadowed))) in u_by_p.iter_mut().zip(rows()) {
+                    let by_p = facet.derivative_p(angles.tan2_alpha, angles.sec_alpha);
+                    *slope = shadowed * by_p * fresnel;
                 }
             }
             start = range.end;
@@ -191,6 +156,44 @@ impl Objective {
                 *value = dielectric.relative(angles.cos_gamma);
             }
         }
+    }
+}
+
+/// u of a row, given by its angles and its shadowing, without its Fresnel factor.
+///
+/// The rows are those of iterators: indices would be checked, and the loops would not be vector code.
+#[inline]
+fn shape_of<F: FacetDistribution, S: Shadowing>(
+    facet: F,
+    shadowing: S,
+    (angles, shadowed): (&Angles, &f64),
+) -> f64 {
+    let shape = shadowed * facet.relative(angles.tan2_alpha, angles.sec_alpha);
+    if S::DEPENDS_ON_WIDTH {
+        let (psi, theta) = (angles.cos_psi, angles.cos_theta);
+        shape * shadowing.over_cosines(psi, theta, angles.tan2_alpha)
+    } else {
+        shape
+    }
+}
+
+/// The derivative of [`shape_of`] with respect to k1.
+#[inline]
+fn shape_by_k1<F: FacetDistribution, S: Shadowing>(
+    facet: F,
+    shadowing: S,
+    (angles, shadowed): (&Angles, &f64),
+) -> f64 {
+    let (t, sec) = (angles.tan2_alpha, angles.sec_alpha);
+    let slope = facet.derivative_k1(t, sec);
+    if S::DEPENDS_ON_WIDTH {
+        let (psi, theta) = (angles.cos_psi, angles.cos_theta);
+        let by_facet = slope * shadowing.over_cosines(psi, theta, t);
+        let by_shadowing =
+            facet.relative(t, sec) * shadowing.over_cosines_derivative_k1(psi, theta, t);
+        shadowed * (by_facet + by_shadowing)
+    } else {
+        shadowed * slope
     }
 }
 

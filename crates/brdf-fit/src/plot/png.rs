@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, LazyLock};
 
+use png::{BitDepth, ColorType, Compression, Encoder, EncodingError};
 use resvg::tiny_skia::{Color, Pixmap, Transform};
 use resvg::usvg::fontdb::Database;
 use resvg::usvg::{Options, Tree};
@@ -52,9 +53,28 @@ pub(super) fn png(svg: &str, scale: f32) -> Result<Vec<u8>, PlotError> {
     image.fill(Color::WHITE);
     let transform = Transform::from_scale(scale, scale);
     resvg::render(&tree, transform, &mut image.as_mut());
-    image
-        .encode_png()
-        .map_err(|error| PlotError::Png(error.to_string()))
+    encoded(&image).map_err(|error| PlotError::Png(error.to_string()))
+}
+
+/// The file of an opaque image.
+///
+/// The usual compression takes a quarter of the time of a report with pictures. The fast one makes files
+/// that are 1.6 times as large.
+fn encoded(image: &Pixmap) -> Result<Vec<u8>, EncodingError> {
+    let rgb: Vec<u8> = image
+        .pixels()
+        .iter()
+        .flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()])
+        .collect();
+    let mut bytes = Vec::new();
+    let mut encoder = Encoder::new(&mut bytes, image.width(), image.height());
+    encoder.set_color(ColorType::Rgb);
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&rgb)?;
+    writer.finish()?;
+    Ok(bytes)
 }
 
 #[expect(

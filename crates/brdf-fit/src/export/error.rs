@@ -24,7 +24,7 @@ pub enum ExportError {
     Tolerance {
         /// The given tolerance, a relative error of f_r.
         tolerance: f64,
-        /// A larger one that a table satisfies; `None` where the lobe is too narrow for any.
+        /// About the smallest one that a table satisfies; `None` where the lobe is too narrow for any.
         reachable: Option<f64>,
     },
     /// The bins of a MERL table are too wide for the tolerance.
@@ -61,7 +61,7 @@ impl ExportError {
 
 fn expected(reachable: Option<f64>) -> String {
     match reachable {
-        Some(tolerance) => format!("a tolerance of at least {tolerance:.1e}"),
+        Some(tolerance) => format!("a tolerance of about {tolerance:.1e} or more"),
         None => "source code, because the lobe is too narrow for a table".to_owned(),
     }
 }

@@ -16,14 +16,14 @@ pub(super) const MAX_ENTRIES: usize = 4_000_000;
 /// The largest number of angles on one axis: with more, the other axes would have almost none.
 const MAX_ANGLES: usize = 2000;
 
-/// The smallest tolerance that the search for a reachable one tries.
-const MIN_SEARCHED_TOLERANCE: f64 = 1e-3;
-
 /// How often a table is refined; each time the allowed error along an axis is multiplied by 0.8.
 const MAX_ROUNDS: usize = 16;
 
-/// About the number of cells that are checked, each at two points.
+/// About the number of cells of a table that are checked, each at two points.
 const CHECKED_CELLS: usize = 500_000;
+
+/// About the number of cells that are checked before a table is computed.
+const TRIED_CELLS: usize = 4000;
 
 /// How many of the failing points, the worst first, the next round takes into account.
 const WORST_POINTS: usize = 200;
@@ -66,7 +66,7 @@ pub(super) struct Table {
 
 /// Every table within the tolerance is too large.
 pub(super) struct Unreachable {
-    /// A tolerance that a table satisfies; the next smaller one that was tried is too small.
+    /// About the smallest tolerance that a table satisfies.
     pub(super) reachable: f64,
 }
 
@@ -77,35 +77,25 @@ impl Table {
     ///
     /// It has more than [`MAX_ENTRIES`].
     pub(super) fn within(function: &impl Tabulated, tolerance: f64) -> Result<Self, Unreachable> {
-        let mut failed = Vec::new();
-        if let Some(table) = Self::refined(function, tolerance, &mut failed) {
-            return Ok(table);
-        }
-        let mut reachable = tolerance.max(MIN_SEARCHED_TOLERANCE);
-        loop {
-            reachable = rounded_up(1.4 * reachable);
-            let found = Self::refined(function, reachable, &mut failed).is_some();
-            // A table with an error of 100 % is of no use: the search ends there.
-            if found || reachable >= 1.0 {
-                return Err(Unreachable { reachable });
-            }
-        }
+        Self::refined(function, tolerance).ok_or_else(|| Unreachable {
+            reachable: reachable_tolerance(function).max(rounded_up(1.4 * tolerance)),
+        })
     }
 
-    /// `None` where there are too many entries. `failed` are the points at which earlier tables
-    /// failed.
-    fn refined(
-        function: &impl Tabulated,
-        tolerance: f64,
-        failed: &mut Vec<Angles>,
-    ) -> Option<Self> {
+    /// `None` where there are too many entries.
+    fn refined(function: &impl Tabulated, tolerance: f64) -> Option<Self> {
         let mut max_error = 0.5 * tolerance;
+        let mut failed = Vec::new();
         for _ in 0..MAX_ROUNDS {
-            let mut table = Self::new(function, axes(function, failed, max_error)?);
-            failed.extend(table.check(function, tolerance));
-            if table.largest_error <= tolerance {
+            let axes = tried_axes(function, tolerance, &mut max_error, &mut failed)?;
+            let mut table = Self::new(function, axes);
+            let value = |index, channel| table.value(index, channel);
+            let check = Check::new(function, &table.axes, tolerance, CHECKED_CELLS, value);
+            (table.largest_error, table.checked) = (check.largest_error, check.checked);
+            if check.failed.is_empty() {
                 return Some(table);
             }
+            failed.extend(check.failed);
             max_error *= 0.8;
         }
         None
@@ -150,37 +140,42 @@ impl Table {
     fn angles(&self, index: [usize; 3]) -> Angles {
         std::array::from_fn(|axis| self.axes[axis][index[axis]])
     }
+}
 
-    /// Interpolates linearly in a cell, given by its first corner; `within` are the coordinates in
-    /// the cell, each from 0 to 1.
-    fn interpolated(&self, cell: [usize; 3], within: [f64; 3], channel: usize) -> f64 {
-        let corner = |bits: usize| {
-            let upper: [usize; 3] = std::array::from_fn(|axis| bits >> axis & 1);
-            let weights = (0..3).map(|axis| match upper[axis] {
-                0 => 1.0 - within[axis],
-                _ => within[axis],
-            });
-            let index = std::array::from_fn(|axis| cell[axis] + upper[axis]);
-            weights.product::<f64>() * self.value(index, channel)
-        };
-        (0..8).map(corner).sum()
-    }
+/// The errors found between the entries of a table.
+struct Check {
+    largest_error: f64,
+    checked: usize,
+    /// The points at which the error exceeds the tolerance, the worst first.
+    failed: Vec<Angles>,
+}
 
-    /// Finds the largest error between the entries. Returns the points at which it exceeds the
-    /// tolerance, the worst first.
-    fn check(&mut self, function: &impl Tabulated, tolerance: f64) -> Vec<Angles> {
+impl Check {
+    /// Checks about `most` cells of a table, which is given by its axes and a function for its entries.
+    fn new(
+        function: &impl Tabulated,
+        axes: &[Vec<f64>; 3],
+        tolerance: f64,
+        most: usize,
+        value: impl Fn([usize; 3], usize) -> f64,
+    ) -> Self {
         let mut random = StdRng::seed_from_u64(1);
-        let cells = self.axes.each_ref().map(|axis| axis.len() - 1);
-        let step = (cells.iter().product::<usize>() / CHECKED_CELLS).max(1);
+        let cells = axes.each_ref().map(|axis| axis.len() - 1);
+        let step = (cells.iter().product::<usize>() / most).max(1);
+        let (mut largest_error, mut checked) = (0.0_f64, 0);
         let mut failed = Vec::new();
         for cell in indices(cells).step_by(step) {
             let anywhere = std::array::from_fn(|_| random.random_range(0.0..1.0));
             for within in [[0.5; 3], anywhere] {
-                let at = self.between(cell, within);
+                let at = between(axes, cell, within);
                 if function.tolerance_applies(at) {
-                    let error = self.error(function, cell, within, at);
-                    self.checked += 1;
-                    self.largest_error = self.largest_error.max(error);
+                    let of = |channel| {
+                        let found = interpolated(cell, within, |index| value(index, channel));
+                        relative_error(found, function.value(channel, at))
+                    };
+                    let error = (0..function.channels()).map(of).fold(0.0, f64::max);
+                    checked += 1;
+                    largest_error = largest_error.max(error);
                     if error > tolerance {
                         failed.push((error, at));
                     }
@@ -189,35 +184,85 @@ impl Table {
         }
         failed.sort_by(|a, b| b.0.total_cmp(&a.0));
         let worst = failed.into_iter().take(WORST_POINTS);
-        worst.map(|(_, at)| at).collect()
+        Self {
+            largest_error,
+            checked,
+            failed: worst.map(|(_, at)| at).collect(),
+        }
     }
+}
 
-    fn between(&self, cell: [usize; 3], within: [f64; 3]) -> Angles {
-        std::array::from_fn(|axis| {
-            let (from, to) = (self.axes[axis][cell[axis]], self.axes[axis][cell[axis] + 1]);
-            from + within[axis] * (to - from)
-        })
+/// A point of a cell, given by the first corner of the cell; `within` are the coordinates in the cell,
+/// each from 0 to 1.
+fn between(axes: &[Vec<f64>; 3], cell: [usize; 3], within: [f64; 3]) -> Angles {
+    std::array::from_fn(|axis| {
+        let (from, to) = (axes[axis][cell[axis]], axes[axis][cell[axis] + 1]);
+        from + within[axis] * (to - from)
+    })
+}
+
+/// Interpolates linearly between the corners of a cell.
+fn interpolated(cell: [usize; 3], within: [f64; 3], value: impl Fn([usize; 3]) -> f64) -> f64 {
+    let corner = |bits: usize| {
+        let upper: [usize; 3] = std::array::from_fn(|axis| bits >> axis & 1);
+        let weights = (0..3).map(|axis| match upper[axis] {
+            0 => 1.0 - within[axis],
+            _ => within[axis],
+        });
+        let index = std::array::from_fn(|axis| cell[axis] + upper[axis]);
+        weights.product::<f64>() * value(index)
+    };
+    (0..8).map(corner).sum()
+}
+
+fn relative_error(found: f64, exact: f64) -> f64 {
+    let error = (found - exact).abs();
+    if error == 0.0 {
+        0.0
+    } else {
+        error / exact.abs()
     }
+}
 
-    /// The largest relative error of the channels at a point of a cell.
-    fn error(
-        &self,
-        function: &impl Tabulated,
-        cell: [usize; 3],
-        within: [f64; 3],
-        at: Angles,
-    ) -> f64 {
-        let of = |channel| {
-            let exact = function.value(channel, at);
-            let error = (self.interpolated(cell, within, channel) - exact).abs();
-            if error == 0.0 {
-                0.0
-            } else {
-                error / exact.abs()
-            }
+/// The axes of a table that satisfies the tolerance in some of its cells, refined until it does; `None`
+/// where there are too many entries. The table itself is not computed.
+fn tried_axes(
+    function: &impl Tabulated,
+    tolerance: f64,
+    max_error: &mut f64,
+    failed: &mut Vec<Angles>,
+) -> Option<[Vec<f64>; 3]> {
+    for _ in 0..MAX_ROUNDS {
+        let axes = axes(function, failed, *max_error)?;
+        let value = |index: [usize; 3], channel| {
+            function.value(channel, std::array::from_fn(|axis| axes[axis][index[axis]]))
         };
-        (0..self.channels).map(of).fold(0.0, f64::max)
+        let check = Check::new(function, &axes, tolerance, TRIED_CELLS, value);
+        if check.failed.is_empty() {
+            return Some(axes);
+        }
+        failed.extend(check.failed);
+        *max_error *= 0.8;
     }
+    None
+}
+
+/// About the smallest tolerance that a table satisfies.
+///
+/// It is found by the axes of the tables alone, from coarse tables to fine ones, so that a refusal does not
+/// compute any table.
+fn reachable_tolerance(function: &impl Tabulated) -> f64 {
+    let suffices = |tolerance: f64| {
+        // Axes that are refined this far have almost always been refined enough.
+        axes(function, &[], 0.25 * tolerance).is_some()
+    };
+    let mut reachable = 1.0;
+    for factor in [4.0, 1.4] {
+        while reachable > 1e-12 && suffices(reachable / factor) {
+            reachable /= factor;
+        }
+    }
+    rounded_up(reachable)
 }
 
 /// All indices of a grid, the last axis fastest.
@@ -410,7 +455,8 @@ mod tests {
                 (at[axis] - from) / (to - from)
             });
             let exact = ridge.value(0, at);
-            let error = (table.interpolated(cell, within, 0) / exact - 1.0).abs();
+            let found = interpolated(cell, within, |index| table.value(index, 0));
+            let error = (found / exact - 1.0).abs();
             assert!(error < 1.3e-2, "{error} at {at:?}");
         }
     }

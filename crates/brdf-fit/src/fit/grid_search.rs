@@ -146,32 +146,52 @@ impl GridSearch {
         model: ReducedModel,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
+        Self::of_density(objective, model, 1, progress)
+    }
+
+    /// The grid search with every second value of n and of p, where a fit does not depend on it alone.
+    pub(crate) fn coarse(
+        objective: &Objective,
+        model: ReducedModel,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
+        Self::of_density(objective, model, 2, progress)
+    }
+
+    /// Takes one of `step` values of n and of p.
+    fn of_density(
+        objective: &Objective,
+        model: ReducedModel,
+        step: usize,
+        progress: &Progress<'_>,
+    ) -> Result<Self, Cancelled> {
         let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
         if several_axes && objective.len() > SEARCHED_READINGS {
             // If E is not defined for the subset, for example because it is zero, all readings are used.
             if let Ok(thinned) = objective.thinned(SEARCHED_READINGS) {
-                return Self::over(&thinned, model, progress);
+                return Self::over(&thinned, model, step, progress);
             }
         }
-        Self::over(objective, model, progress)
+        Self::over(objective, model, step, progress)
     }
 
     fn over(
         objective: &Objective,
         model: ReducedModel,
+        step: usize,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
-        let axis = |parameter, all: &[f64]| {
+        let axis = |parameter, all: &[f64], step| {
             if model.frees(parameter) {
-                all.to_vec()
+                all.iter().copied().step_by(step).collect()
             } else {
                 vec![model.fixed(parameter).unwrap_or(objective.n())]
             }
         };
         let axes = [
-            axis(Parameter::K1, &widths()),
-            axis(Parameter::N, &INDICES),
-            axis(Parameter::P, &EXPONENTS),
+            axis(Parameter::K1, &widths(), 1),
+            axis(Parameter::N, &INDICES, step),
+            axis(Parameter::P, &EXPONENTS, step),
         ];
         let fresnel: Vec<Vec<f64>> = axes[1]
             .iter()

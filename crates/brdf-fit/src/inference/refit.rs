@@ -40,13 +40,13 @@ impl<'a> Refitter<'a> {
         })
     }
 
-    /// Searches an objective. Its fit starts from the lowest point of the grid.
+    /// Searches an objective on the coarse grid. Its fit starts from the lowest point of the grid.
     pub(super) fn searching(
         objective: &'a Objective,
         model: ReducedModel,
         progress: &'a Progress<'a>,
     ) -> Result<Self, Cancelled> {
-        let search = GridSearch::new(objective, model, progress)?;
+        let search = GridSearch::coarse(objective, model, progress)?;
         let lowest = search.whole().lowest().parameters;
         let polished = unless_cancelled(polish(objective, lowest, model.free(), progress))?;
         Ok(Self {

@@ -18,6 +18,7 @@ pub fn read(bytes: &[u8], format: Option<Format>, name: &str) {
             phi_zero: side,
             theta_positive: side,
             sample,
+            ..ReadOptions::default()
         };
         if let Ok(scan) = Measurements::from_bytes(name, bytes, &options) {
             assert!(!scan.readings().is_empty());

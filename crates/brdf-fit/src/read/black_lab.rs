@@ -28,7 +28,7 @@
 //! the azimuth follows from these files: the specular lobe of a coating is at a difference of 180 deg.
 
 use super::angles::{AngleUnit, TwoDirections};
-use super::conversion::{BEYOND_HORIZON, Quantity, left_out};
+use super::conversion::{BEYOND_HORIZON, Kind, Quantity, left_out};
 use super::error::ReadError;
 use super::number::{Field, is_angle, is_reading, micrometres};
 use super::options::ReadOptions;
@@ -155,8 +155,8 @@ fn quantity(text: &Text<'_>, header: u64, before: &[String]) -> Result<Quantity,
     let title = before.iter().find(|line| !line.is_empty());
     let mut words = title.map_or("", String::as_str).split_whitespace();
     match words.next() {
-        Some("BRF") => Ok(Quantity::ReflectanceFactor),
-        Some("BRDF") => Ok(Quantity::Brdf),
+        Some("BRF") => Ok(Quantity::of(Kind::ReflectanceFactor)),
+        Some("BRDF") => Ok(Quantity::BRDF),
         _ => {
             let message = "the quantity of the values is not given before the column names: expected \
                            a first line \"BRF Values\" or \"BRDF Values\"";

@@ -2,8 +2,9 @@
 
 use std::fmt::Display;
 
-use super::conversion::Quantity;
+use super::conversion::{Kind, Quantity, Scale, Values};
 use super::error::ReadError;
+use super::names::quantity_named;
 use super::number::parse_number;
 use super::text::Text;
 use crate::scan::{Metadata, RefractiveIndex};
@@ -28,20 +29,44 @@ pub(super) fn key_and_value(comment: &str) -> Option<(String, String)> {
     is_word.then(|| (key, value.to_owned()))
 }
 
-/// The metadata in the comments of a text.
+/// The metadata in the comments of a text, and those of them that the readings depend on.
 #[derive(Default)]
 pub(super) struct Comments {
     pub(super) metadata: Metadata,
-    pub(super) quantity: Option<Quantity>,
     pub(super) refractive_index: Option<RefractiveIndex>,
+    quantity: Option<Quantity>,
+    scale: Option<Scale>,
+    factor: Option<f64>,
+    missing: Option<f64>,
+    /// The keys that the options of the reading declare: they take precedence over the file.
+    declared: Vec<String>,
 }
 
 impl Comments {
+    /// The comments that the options of the reading declare.
+    ///
+    /// # Errors
+    ///
+    /// A declaration is not valid.
+    pub(super) fn declared(
+        text: &Text<'_>,
+        declarations: &[(String, String)],
+    ) -> Result<Self, ReadError> {
+        let mut comments = Self::default();
+        for (key, value) in declarations {
+            let message = |message| text.error(format!("declared {message}"));
+            comments.set(key, value).map_err(message)?;
+            comments.metadata.0.push((key.clone(), value.clone()));
+            comments.declared.push(key.clone());
+        }
+        Ok(comments)
+    }
+
     /// Adds the key and the value of a comment, if it has them.
     ///
     /// # Errors
     ///
-    /// The quantity or the refractive index is not valid, or contradicts an earlier one.
+    /// The value of a key that the readings depend on is not valid, or contradicts an earlier one.
     pub(super) fn add(
         &mut self,
         text: &Text<'_>,
@@ -51,20 +76,102 @@ impl Comments {
         let Some((key, value)) = key_and_value(&String::from_utf8_lossy(comment)) else {
             return Ok(());
         };
-        let set = match key.as_str() {
-            "quantity" => set_once(&mut self.quantity, quantity(&value), &key),
-            "refractive_index" => set_once(&mut self.refractive_index, value.parse(), &key),
-            _ => Ok(()),
-        };
+        if self.declared.contains(&key) {
+            return Ok(());
+        }
+        let set = self.set(&key, &value);
         set.map_err(|message| text.line_error(line, message))?;
         self.metadata.0.push((key, value));
         Ok(())
     }
+
+    fn set(&mut self, key: &str, value: &str) -> Result<(), String> {
+        match key {
+            "quantity" => set_once(&mut self.quantity, quantity(value), key),
+            "unit" => set_once(&mut self.scale, scale(value), key),
+            "factor" => set_once(&mut self.factor, number(value, |x| x > 0.0), key),
+            "missing" => set_once(&mut self.missing, number(value, |_| true), key),
+            "refractive_index" => {
+                let value = with_decimal_points(value);
+                set_once(&mut self.refractive_index, value.parse(), key)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The quantity and the factor of the values, from the comments and from what the file itself says
+    /// of the values.
+    ///
+    /// # Errors
+    ///
+    /// The two contradict each other, or f_r is said to be in percent.
+    pub(super) fn values(&self, of_file: Quantity) -> Result<Values, String> {
+        let mut quantity = match self.quantity {
+            Some(stated) if of_file != Quantity::BRDF && of_file != stated => {
+                return Err(format!(
+                    "the comments say that the values are {stated}, the column that they are {of_file}"
+                ));
+            }
+            stated => stated.unwrap_or(of_file),
+        };
+        if let Some(scale) = self.scale {
+            if quantity.scale != Scale::One && quantity.scale != scale {
+                return Err(format!(
+                    "the values are {quantity}: the unit contradicts this"
+                ));
+            }
+            quantity.scale = scale;
+        }
+        if quantity.scale == Scale::Percent && quantity.kind != Kind::ReflectanceFactor {
+            return Err(format!(
+                "{quantity} has no meaning: expected \"quantity: reflectance_factor\" beside the unit"
+            ));
+        }
+        let factor = self.factor.unwrap_or(1.0);
+        Ok(Values { quantity, factor })
+    }
+
+    /// The value that stands for a reading that was not taken.
+    pub(super) fn missing(&self) -> Option<f64> {
+        self.missing
+    }
 }
 
 fn quantity(value: &str) -> Result<Quantity, String> {
-    let expected = "expected brdf, brdf_cos or reflectance_factor";
-    Quantity::named(value).ok_or_else(|| format!("\"{value}\" is not known: {expected}"))
+    quantity_named(value).ok_or_else(|| {
+        format!(
+            "\"{value}\" is not known: expected brdf, brdf_cos, reflectance_factor, \
+             reflectance_factor_percent, log10_brdf or brdf_db"
+        )
+    })
+}
+
+fn scale(value: &str) -> Result<Scale, String> {
+    match value.to_lowercase().as_str() {
+        "%" | "percent" => Ok(Scale::Percent),
+        "1/sr" | "per sr" | "sr^-1" | "1" => Ok(Scale::One),
+        "log10" => Ok(Scale::Log10),
+        "db" => Ok(Scale::Decibel),
+        _ => Err(format!(
+            "\"{value}\" is not known: expected percent, 1/sr, log10 or dB"
+        )),
+    }
+}
+
+fn number(value: &str, accepts: fn(f64) -> bool) -> Result<f64, String> {
+    let number = parse_number(value.as_bytes(), true);
+    let number = number.filter(|number| number.is_finite() && accepts(*number));
+    number.ok_or_else(|| format!("\"{value}\": expected a number, of a factor above 0"))
+}
+
+/// A single number with a decimal comma, as with a point: a list has other commas.
+fn with_decimal_points(value: &str) -> String {
+    match parse_number(value.as_bytes(), true) {
+        Some(number) if value.matches(',').count() == 1 && !value.contains('=') => {
+            number.to_string()
+        }
+        _ => value.to_owned(),
+    }
 }
 
 /// Sets a value that the readings depend on. A key may be repeated with the same value only.

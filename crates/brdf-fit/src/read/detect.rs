@@ -62,9 +62,6 @@ fn is_detected_as_merl(path: &Path) -> io::Result<bool> {
 fn by_content(head: &[u8]) -> Option<Format> {
     let mut zemax_lines = 0;
     for (_, line) in lines(head) {
-        if csv::is_header(line) {
-            return Some(Format::Csv);
-        }
         match first_word(line) {
             b"VARS" => return Some(Format::Astm),
             b"src_z" => return Some(Format::BlackLab),
@@ -75,6 +72,9 @@ fn by_content(head: &[u8]) -> Option<Format> {
         }
         if zemax_lines == 2 {
             return Some(Format::Zemax);
+        }
+        if csv::is_header(line) {
+            return Some(Format::Csv);
         }
     }
     goniometer::is_table(head).then_some(Format::Goniometer)

@@ -4,6 +4,45 @@
 //! would open a field that extends over the following lines, whose readings would be lost without a
 //! warning. Each reading is on one line, so that a quote that is not closed on its line is an error.
 
+/// The separator of the fields of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Separator {
+    Byte(u8),
+    /// Any number of spaces and tabs.
+    Spaces,
+}
+
+impl Separator {
+    /// All separators, those that are seldom part of a field first.
+    pub(super) const ALL: [Self; 4] = [
+        Self::Byte(b'\t'),
+        Self::Byte(b';'),
+        Self::Byte(b','),
+        Self::Spaces,
+    ];
+
+    /// Splits a line into `fields`, whose previous content is dropped.
+    ///
+    /// # Errors
+    ///
+    /// As [`split`].
+    pub(super) fn split<'a>(
+        self,
+        line: &'a [u8],
+        fields: &mut Vec<&'a [u8]>,
+    ) -> Result<(), &'static str> {
+        match self {
+            Self::Byte(byte) => split(line, byte, fields),
+            Self::Spaces => {
+                fields.clear();
+                let words = line.split(u8::is_ascii_whitespace);
+                fields.extend(words.filter(|word| !word.is_empty()));
+                Ok(())
+            }
+        }
+    }
+}
+
 /// Splits a line into `fields`, whose previous content is dropped. Quotes around a field are removed.
 ///
 /// # Errors

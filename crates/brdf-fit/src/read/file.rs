@@ -8,7 +8,7 @@ use super::error::ReadError;
 use super::options::ReadOptions;
 use super::text::{Text, read_bytes};
 use super::{astm, black_lab, csv, detect, goniometer, merl, zemax};
-use crate::scan::{Convention, Format, Measurements};
+use crate::scan::{Format, Measurements};
 
 impl Measurements {
     /// Reads a file of any [`Format`].
@@ -102,10 +102,10 @@ fn from_text(
 ) -> Result<Measurements, ReadError> {
     let text = Text::new(path, bytes)?;
     match format {
-        Format::Csv | Format::Merl => csv::read(text, options.convention(Convention::default())),
+        Format::Csv | Format::Merl => csv::read(text, options),
         Format::Astm => astm::read(text, options),
         Format::Zemax => zemax::read(text, options),
         Format::BlackLab => black_lab::read(text, options),
-        Format::Goniometer => goniometer::read(text, options.convention(Convention::default())),
+        Format::Goniometer => goniometer::read(text, options),
     }
 }

@@ -11,52 +11,56 @@
 //!
 //! (The numbers are made up.) The first line that is not a comment holds the incidence zenith angles
 //! psi, after a corner that is empty or not a number. Each further line holds a view zenith angle theta
-//! and a reading for each incidence. All angles are in degrees, psi in [0, 90), theta in (-90, 90) and
-//! signed, by default positive on the source's side. A cell that is empty, `-` or `nan` is a reading that
-//! was not taken. Fields are separated by tabs, semicolons, commas or spaces; a decimal comma is accepted
-//! where the separator is not the comma.
+//! and a reading for each incidence. All angles are in degrees; theta is signed, by default positive on the
+//! source's side. Readings at or beyond 90 deg are left out and counted, as are cells that are empty, `-` or
+//! `nan`. Fields are separated by tabs, semicolons, commas or spaces; a decimal comma is accepted where the
+//! separator is not the comma.
 //!
-//! Comments are as in [`csv`](super::csv), with the keys
-//! - `quantity`: `brdf` (f_r in 1/sr, the default), `brdf_cos` (f_r cos theta, divided by cos theta) or
-//!   `reflectance_factor` (pi f_r, divided by pi);
-//! - `refractive_index`, as there;
-//! - `wavelength_um`: the wavelength in um;
+//! The columns may also be azimuths phi, at one incidence that `# psi_deg:` gives. They are taken for
+//! azimuths where the corner or `# columns: azimuth` says so, where one is negative or above 90 deg, and
+//! where all readings at theta = 0 are equal. They are taken for incidences where the corner or
+//! `# columns: incidence` says so, where the readings at theta = 0 differ, and where view angles are
+//! negative. Anything else is an error that asks.
+//!
+//! Comments are as in [`csv`](super::csv), with its keys `quantity`, `unit`, `factor`, `missing`,
+//! `refractive_index`, `wavelength_um`, and
 //! - `phi_deg`: the view azimuth phi in degrees, 0 by default, for a table outside the plane of
-//!   incidence.
+//!   incidence;
+//! - `psi_deg` and `columns`, as above.
 //!
 //! There is no standard for such tables: this is the common form of goniometers' spreadsheets. The
 //! files of the Black Lab have another form, see [`black_lab`](super::black_lab).
 
 use super::comments::{Comments, comment_of, number_of_key};
-use super::conversion::{Quantity, left_out};
+use super::conversion::{BEYOND_HORIZON, Quantity, left_out};
 use super::error::ReadError;
-use super::fields;
-use super::number::{Field, is_angle, is_reading, is_wavelength, parse_number};
+use super::fields::Separator;
+use super::number::{Field, is_angle, is_reading, is_wavelength, parse_number, was_not_taken};
+use super::options::ReadOptions;
 use super::text::{Text, lines};
 use crate::scan::{Convention, Format, Measurement, Measurements};
 
-const PSI: &str = "incidence";
-const THETA: &str = "view";
-const EXPECTED_PSI: &str = "expected degrees from 0 to below 90";
-const EXPECTED_THETA: &str = "expected degrees between -90 and 90";
+const COLUMN: &str = "angles";
+const VIEW: &str = "view";
 
 /// # Errors
 ///
 /// The text is not such a table.
-pub(super) fn read(text: Text<'_>, convention: Convention) -> Result<Measurements, ReadError> {
-    let mut comments = Comments::default();
+pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
+    let convention = options.convention(Convention::default());
+    let mut comments = Comments::declared(&text, &options.declarations)?;
     let mut table: Option<Table> = None;
     for line in text.checked_lines() {
         let (number, line) = line?;
         match (comment_of(line), &mut table) {
             (Some(comment), _) => comments.add(&text, number, comment)?,
             (None, _) if line.trim_ascii().is_empty() => {}
-            (None, None) => table = Some(Table::new(&text, number, line)?),
+            (None, None) => table = Some(Table::new(&text, number, line, comments.missing())?),
             (None, Some(table)) => table.add_row(&text, number, line)?,
         }
     }
     let table = table.ok_or_else(|| text.error("has no line of incidence angles"))?;
-    if table.cells.is_empty() {
+    if table.rows.is_empty() {
         return Err(text.line_error(table.number, "no readings follow the incidence angles"));
     }
     table.measurements(&text, comments, convention)
@@ -69,110 +73,131 @@ pub(super) fn is_table(head: &[u8]) -> bool {
     let (Some(header), Some(first)) = (rows.next(), rows.next()) else {
         return false;
     };
-    let Some(separator) = Separator::of(header) else {
+    let Some(separator) = separator_of(header) else {
         return false;
     };
-    let fields = separator.fields(first).unwrap_or_default();
+    let fields = fields(separator, first).unwrap_or_default();
     let theta = fields.first();
-    theta.is_some_and(|theta| parse_number(theta, separator.decimal_comma()).is_some())
+    theta.is_some_and(|theta| parse_number(theta, decimal_comma(separator)).is_some())
 }
 
-/// The separator of the fields.
-#[derive(Clone, Copy)]
-enum Separator {
-    Byte(u8),
-    Spaces,
-}
-
-impl Separator {
-    /// The separator by which a line is a corner and numbers.
-    fn of(header: &[u8]) -> Option<Self> {
-        let all = [b'\t', b';', b','].map(Self::Byte);
-        let mut all = all.into_iter().chain([Self::Spaces]);
-        all.find(|separator| {
-            let fields = separator.fields(header).unwrap_or_default();
-            let number = |field: &[u8]| parse_number(field, separator.decimal_comma()).is_some();
-            match fields.as_slice() {
-                [corner, incidences @ ..] if !incidences.is_empty() => {
-                    !number(corner) && incidences.iter().all(|field| number(field))
-                }
-                _ => false,
+/// The separator by which a line is a corner and numbers.
+fn separator_of(header: &[u8]) -> Option<Separator> {
+    Separator::ALL.into_iter().find(|separator| {
+        let fields = fields(*separator, header).unwrap_or_default();
+        let number = |field: &[u8]| parse_number(field, decimal_comma(*separator)).is_some();
+        match fields.as_slice() {
+            [corner, incidences @ ..] if !incidences.is_empty() => {
+                !number(corner) && incidences.iter().all(|field| number(field))
             }
-        })
+            _ => false,
+        }
+    })
+}
+
+fn decimal_comma(separator: Separator) -> bool {
+    separator != Separator::Byte(b',')
+}
+
+/// The fields of a line, without blank fields at its end.
+///
+/// # Errors
+///
+/// A quote is not closed, or text follows a closing quote.
+fn fields(separator: Separator, line: &[u8]) -> Result<Vec<&[u8]>, &'static str> {
+    let mut found = Vec::new();
+    separator.split(line, &mut found)?;
+    while found.len() > 1
+        && found
+            .last()
+            .is_some_and(|field| field.trim_ascii().is_empty())
+    {
+        found.pop();
+    }
+    Ok(found)
+}
+
+/// What the columns of a table are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Columns {
+    Incidences,
+    Azimuths,
+}
+
+impl Columns {
+    fn named(name: &str) -> Option<Self> {
+        match name {
+            "incidence" | "psi_deg" => Some(Self::Incidences),
+            "azimuth" | "phi_deg" => Some(Self::Azimuths),
+            _ => None,
+        }
     }
 
-    fn decimal_comma(self) -> bool {
-        !matches!(self, Self::Byte(b','))
-    }
-
-    /// The fields of a line, without blank fields at its end.
-    ///
-    /// # Errors
-    ///
-    /// A quote is not closed, or text follows a closing quote.
-    fn fields(self, line: &[u8]) -> Result<Vec<&[u8]>, &'static str> {
-        let mut found = Vec::new();
-        match self {
-            Self::Byte(byte) => fields::split(line, byte, &mut found)?,
-            Self::Spaces => found.extend(
-                line.split(u8::is_ascii_whitespace)
-                    .filter(|f| !f.is_empty()),
-            ),
+    /// What the corner above the view angles says of the columns.
+    fn of_corner(corner: &[u8]) -> Option<Self> {
+        let corner = String::from_utf8_lossy(corner).to_lowercase();
+        let has = |words: &[&str]| words.iter().any(|word| corner.contains(word));
+        match (
+            has(&["psi", "incid", "aoi", "theta_i", "ψ"]),
+            has(&["phi", "azim", "φ", "ϕ"]),
+        ) {
+            (true, false) => Some(Self::Incidences),
+            (false, true) => Some(Self::Azimuths),
+            _ => None,
         }
-        while found.len() > 1
-            && found
-                .last()
-                .is_some_and(|field| field.trim_ascii().is_empty())
-        {
-            found.pop();
-        }
-        Ok(found)
     }
 }
 
 /// The table as it is in the file.
 struct Table {
-    /// The number of the line of incidence angles.
+    /// The number of the line above the columns.
     number: u64,
     separator: Separator,
-    psi_deg: Vec<f64>,
-    /// Incidence and view angle in degrees and the reading, in the order of the file.
-    cells: Vec<[f64; 3]>,
-    not_taken: usize,
+    corner: Option<Columns>,
+    /// The angle of each column in degrees.
+    columns_deg: Vec<f64>,
+    /// The view angle of each row in degrees, and its readings.
+    rows: Vec<(f64, Vec<Option<f64>>)>,
+    missing: Option<f64>,
 }
 
 impl Table {
-    fn new(text: &Text<'_>, number: u64, line: &[u8]) -> Result<Self, ReadError> {
-        let Some(separator) = Separator::of(line) else {
+    fn new(
+        text: &Text<'_>,
+        number: u64,
+        line: &[u8],
+        missing: Option<f64>,
+    ) -> Result<Self, ReadError> {
+        let Some(separator) = separator_of(line) else {
             let message = "expected a corner and incidence angles in degrees, such as \
                            \"theta_deg, 10, 30, 50\"";
             return Err(text.line_error(number, message));
         };
-        let fields = separator.fields(line);
+        let fields = fields(separator, line);
         let fields = fields.map_err(|message| text.line_error(number, message))?;
-        let psi = |field: &&[u8]| {
+        let column = |field: &&[u8]| {
             let field = Field {
                 text: field,
-                decimal_comma: separator.decimal_comma(),
+                decimal_comma: decimal_comma(separator),
             };
-            let accepts = |psi: f64| (0.0..90.0).contains(&psi);
-            text.number(number, PSI, &field, EXPECTED_PSI, accepts)
+            text.number(number, COLUMN, &field, "expected degrees", is_angle)
         };
-        let psi_deg = fields.iter().skip(1).map(psi);
+        let columns_deg = fields.iter().skip(1).map(column);
         Ok(Self {
             number,
             separator,
-            psi_deg: psi_deg.collect::<Result<_, _>>()?,
-            cells: Vec::new(),
-            not_taken: 0,
+            corner: Columns::of_corner(fields[0]),
+            columns_deg: columns_deg.collect::<Result<_, _>>()?,
+            rows: Vec::new(),
+            missing,
         })
     }
 
     fn add_row(&mut self, text: &Text<'_>, number: u64, line: &[u8]) -> Result<(), ReadError> {
-        let fields = self.separator.fields(line);
+        let fields = fields(self.separator, line);
         let fields = fields.map_err(|message| text.line_error(number, message))?;
-        let decimal_comma = self.separator.decimal_comma();
-        let (found, expected) = (fields.len(), self.psi_deg.len() + 1);
+        let decimal_comma = decimal_comma(self.separator);
+        let (found, expected) = (fields.len(), self.columns_deg.len() + 1);
         if found > expected {
             let message = format!("{found} fields: expected {expected}, one for each column");
             return Err(text.line_error(number, message));
@@ -181,19 +206,51 @@ impl Table {
             text: fields.get(column).copied().unwrap_or_default(),
             decimal_comma,
         };
-        let accepts = |theta: f64| theta.abs() < 90.0;
-        let theta_deg = text.number(number, THETA, &field(0), EXPECTED_THETA, accepts)?;
-        for (i, &psi_deg) in self.psi_deg.iter().enumerate() {
+        let theta_deg = text.number(number, VIEW, &field(0), "expected degrees", is_angle)?;
+        let cell = |(i, column_deg): (usize, &f64)| {
             let cell = field(i + 1);
             if was_not_taken(cell.text) {
-                self.not_taken += 1;
-                continue;
+                return Ok(None);
             }
-            let name = format!("incidence {psi_deg}");
+            let name = format!("of {column_deg} deg");
             let reading = text.number(number, &name, &cell, "expected a reading", is_reading)?;
-            self.cells.push([psi_deg, theta_deg, reading]);
-        }
+            Ok(Some(reading).filter(|reading| self.missing != Some(*reading)))
+        };
+        let cells = self.columns_deg.iter().enumerate().map(cell);
+        let cells = cells.collect::<Result<_, ReadError>>()?;
+        self.rows.push((theta_deg, cells));
         Ok(())
+    }
+
+    /// What the columns are, by their corner or by the numbers; `None` where neither says it.
+    ///
+    /// Incidences are from 0 to below 90 deg. At theta = 0 the direction does not depend on the azimuth,
+    /// so that all azimuths have one reading, but incidences have not. Negative view angles are those of a
+    /// scan through both sides, for which no table has azimuths.
+    fn columns(&self) -> Option<Columns> {
+        let beyond = |angle: &f64| !(0.0..=90.0).contains(angle);
+        if self.corner.is_some() {
+            return self.corner;
+        }
+        if self.columns_deg.iter().any(beyond) {
+            return Some(Columns::Azimuths);
+        }
+        let normal = self.rows.iter().find(|(theta_deg, _)| *theta_deg == 0.0);
+        let normal: Vec<f64> = normal
+            .map(|(_, cells)| cells.iter().copied().flatten().collect())
+            .unwrap_or_default();
+        if let [first, others @ ..] = normal.as_slice()
+            && others.len() >= 2
+        {
+            let same = |other: &f64| (other - first).abs() <= 1e-9 * first.abs();
+            return Some(match others.iter().all(same) {
+                true => Columns::Azimuths,
+                false => Columns::Incidences,
+            });
+        }
+        let one_column = self.columns_deg.len() == 1;
+        let both_sides = self.rows.iter().any(|(theta_deg, _)| *theta_deg < 0.0);
+        (one_column || both_sides).then_some(Columns::Incidences)
     }
 
     fn measurements(
@@ -202,26 +259,74 @@ impl Table {
         comments: Comments,
         convention: Convention,
     ) -> Result<Measurements, ReadError> {
+        let problem = |message: String| text.line_error(self.number, message);
+        let stated = match comments.metadata.get("columns") {
+            None => None,
+            Some(name) => Some(Columns::named(name).ok_or_else(|| {
+                text.error(format!(
+                    "columns: \"{name}\": expected incidence or azimuth"
+                ))
+            })?),
+        };
+        let columns = stated.or_else(|| self.columns()).ok_or_else(|| {
+            problem(
+                "the angles of the columns may be incidences or azimuths: expected a line \"# columns: \
+                 incidence\" or \"# columns: azimuth\" in the file"
+                    .to_owned(),
+            )
+        })?;
         let number = |key, expected, accepts| {
             number_of_key(text, &comments.metadata, key, expected, accepts)
         };
         let expected = "expected micrometres above 0";
         let wavelength_um = number("wavelength_um", expected, is_wavelength)?;
         let phi_deg = number("phi_deg", "expected degrees", is_angle)?.unwrap_or(0.0);
-        let quantity = comments.quantity.unwrap_or(Quantity::Brdf);
-        let reading = |[psi_deg, theta_deg, reading]: [f64; 3]| {
-            let (theta, phi) = convention.in_model(theta_deg, phi_deg);
-            Measurement {
-                wavelength_um,
-                psi: psi_deg.to_radians(),
-                theta,
-                phi,
-                brdf: quantity.to_brdf(reading, theta),
-                sigma: None,
+        let expected = "expected degrees from 0 to below 90";
+        let psi_deg = number("psi_deg", expected, |psi| (0.0..90.0).contains(&psi))?;
+        if columns == Columns::Azimuths && psi_deg.is_none() {
+            return Err(problem(
+                "the columns are azimuths, and the incidence angle is not given: expected a line such as \
+                 \"# psi_deg: 30\" in the file"
+                    .to_owned(),
+            ));
+        }
+        let values = comments.values(Quantity::BRDF).map_err(problem)?;
+        let (mut not_taken, mut beyond) = (0, 0);
+        let mut readings = Vec::new();
+        for (theta_deg, cells) in &self.rows {
+            for (&column_deg, cell) in self.columns_deg.iter().zip(cells) {
+                let (psi_deg, phi_deg) = match columns {
+                    Columns::Incidences => (column_deg, phi_deg),
+                    Columns::Azimuths => (psi_deg.unwrap_or(0.0), column_deg),
+                };
+                let Some(reading) = *cell else {
+                    not_taken += 1;
+                    continue;
+                };
+                if !(0.0..90.0).contains(&psi_deg) || theta_deg.abs() >= 90.0 {
+                    beyond += 1;
+                    continue;
+                }
+                let (theta, phi) = convention.in_model(*theta_deg, phi_deg);
+                readings.push(Measurement {
+                    wavelength_um,
+                    psi: psi_deg.to_radians(),
+                    theta,
+                    phi,
+                    brdf: values.to_brdf(reading, theta),
+                    sigma: None,
+                });
             }
-        };
-        let mut conversions: Vec<String> = quantity.conversion().into_iter().collect();
-        conversions.extend(left_out(self.not_taken, "not taken (empty cells)"));
+        }
+        if readings.is_empty() {
+            return Err(problem("no readings above the surface follow".to_owned()));
+        }
+        let mut conversions = values.conversions();
+        if columns == Columns::Azimuths {
+            conversions.push("the columns are azimuths".to_owned());
+        }
+        conversions.extend(left_out(not_taken, "not taken (empty cells)"));
+        conversions.extend(left_out(beyond, BEYOND_HORIZON));
         Ok(Measurements {
             source: text.path.display().to_string(),
             metadata: comments.metadata,
@@ -229,15 +334,10 @@ impl Table {
             convention,
             format: Format::Goniometer,
             conversions,
-            readings: self.cells.into_iter().map(reading).collect(),
+            readings,
             ..Measurements::default()
         })
     }
-}
-
-fn was_not_taken(field: &[u8]) -> bool {
-    let field = field.trim_ascii();
-    field.is_empty() || field == b"-" || field.eq_ignore_ascii_case(b"nan")
 }
 
 #[cfg(test)]
@@ -251,10 +351,11 @@ mod tests {
                        theta_deg,10,30\n-60,0.1,0.2\n20,,0.4\n";
 
     fn read_as(content: &str, convention: Convention) -> Result<Measurements, ReadError> {
-        read(
-            Text::new(Path::new("a.txt"), content.as_bytes())?,
-            convention,
-        )
+        let options = ReadOptions {
+            theta_positive: Some(convention.theta_positive),
+            ..ReadOptions::default()
+        };
+        read(Text::new(Path::new("a.txt"), content.as_bytes())?, &options)
     }
 
     fn scan(content: &str) -> Measurements {
@@ -323,15 +424,53 @@ mod tests {
     #[test]
     fn errors_name_line_column_and_value() {
         assert!(error("1,2,3\n").contains("line 1: expected a corner and incidence angles"));
-        assert!(error("t,10,95\n").contains("column incidence: \"95\" is out of range"));
-        assert!(error("t,10\n91,0.1\n").contains("line 2, column view: \"91\" is out of range"));
+        assert!(error("t,10,95\n1,2,3\n").contains("the columns are azimuths"));
+        assert!(error("t,10\n91,0.1\n").contains("no readings above the surface"));
         assert!(error("t,10\n1,0.1,2\n").contains("line 2: 3 fields: expected 2"));
-        assert!(error("t,10\n1,x\n").contains("column incidence 10: \"x\" is not a number"));
+        assert!(error("t,10\n1,x\n").contains("column of 10 deg: \"x\" is not a number"));
         assert!(error("t,10\n").contains("line 1: no readings follow"));
         assert!(error("# a: b\n").contains("has no line of incidence angles"));
         assert!(error("# wavelength_um: red\nt,10\n1,1\n").contains("wavelength_um: \"red\""));
         let twice = "# phi_deg: 1\n# phi_deg: 2\nt,10\n1,1\n";
         assert!(error(twice).contains("phi_deg is given twice"));
+    }
+
+    #[test]
+    fn azimuths_are_never_taken_for_incidences() {
+        for evident in [
+            "x,-90,0,90\n0,1,1,1\n10,1,2,3\n",
+            "x,0,15,30\n0,1,1,1\n10,1,2,3\n",
+            "theta\\phi,0,15\n10,1,2\n",
+        ] {
+            assert!(
+                error(evident).contains("the columns are azimuths"),
+                "{evident}"
+            );
+            let scan = scan(&format!("# psi_deg: 30\n{evident}"));
+            assert!(
+                scan.readings()
+                    .iter()
+                    .all(|reading| reading.psi == 30_f64.to_radians())
+            );
+        }
+        assert!(error("x,10,30\n10,1,2\n20,1,2\n").contains("incidences or azimuths"));
+        for evident in [
+            "x,10,30,50\n0,1,2,3\n",
+            "psi,10,30\n10,1,2\n",
+            "x,10,30\n-10,1,2\n",
+        ] {
+            assert_eq!(cells(&scan(evident))[0].0, 10.0, "{evident}");
+        }
+    }
+
+    #[test]
+    fn readings_at_the_horizon_are_left_out_and_counted() {
+        let scan = scan("psi,10,90\n-90,0,0\n20,0.1,0\n");
+        assert_eq!(scan.readings().len(), 1);
+        assert_eq!(
+            scan.conversions,
+            ["3 readings at or beyond 90 deg from the normal are left out"]
+        );
     }
 
     #[test]

@@ -17,6 +17,7 @@ mod file;
 pub mod goniometer;
 mod lazy_scan;
 pub mod merl;
+mod names;
 mod number;
 mod options;
 mod text;
@@ -24,4 +25,4 @@ pub mod zemax;
 
 pub use error::ReadError;
 pub use lazy_scan::LazyScan;
-pub use options::ReadOptions;
+pub use options::{DECLARED_KEYS, ReadOptions};

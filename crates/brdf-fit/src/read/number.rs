@@ -18,17 +18,49 @@ impl<'a> Field<'a> {
 }
 
 /// The number in a field; `None` where there is none.
+///
+/// Beside the usual spellings, the minus sign and the spaces of typesetting and the exponent of Fortran
+/// are read.
 pub(super) fn parse_number(field: &[u8], decimal_comma: bool) -> Option<f64> {
     let field = field.trim_ascii();
-    match fast_float2::parse(field) {
-        Err(_) if decimal_comma && !field.contains(&b'.') => {
-            let comma = field.iter().position(|&byte| byte == b',')?;
-            let mut with_point = field.to_vec();
-            with_point[comma] = b'.';
-            fast_float2::parse(with_point).ok()
+    fast_float2::parse(field)
+        .ok()
+        .or_else(|| parse_unusual_number(field, decimal_comma))
+}
+
+fn parse_unusual_number(field: &[u8], decimal_comma: bool) -> Option<f64> {
+    const LONGEST: usize = 64;
+    let text = str::from_utf8(field)
+        .ok()
+        .filter(|text| text.len() <= LONGEST)?;
+    let decimal_comma = decimal_comma && !text.contains('.') && text.matches(',').count() == 1;
+    let is_hexadecimal = text.starts_with("0x");
+    let digits_before = |at: usize| text[..at].ends_with(|c: char| c.is_ascii_digit() || c == '.');
+    let mut usual = String::with_capacity(text.len());
+    for (i, c) in text.char_indices() {
+        match c {
+            '\u{2212}' | '\u{2013}' => usual.push('-'),
+            '\u{a0}' | '\u{202f}' | '\u{2009}' => {}
+            ',' if decimal_comma => usual.push('.'),
+            'D' | 'd' if !is_hexadecimal && digits_before(i) => usual.push('e'),
+            c => usual.push(c),
         }
-        result => result.ok(),
     }
+    fast_float2::parse(usual).ok()
+}
+
+/// Whether a field says that a reading was not taken.
+pub(super) fn was_not_taken(field: &[u8]) -> bool {
+    let field = field.trim_ascii();
+    let is = |word: &str| field.eq_ignore_ascii_case(word.as_bytes());
+    ["", "-", "nan", "na", "n/a", "#n/a", "null", "none"]
+        .into_iter()
+        .any(is)
+}
+
+/// Whether a value is one that programs write for a reading that was not taken. As f_r it is impossible.
+pub(super) fn looks_missing(value: f64) -> bool {
+    [-99.0, -999.0, -9999.0, -99999.0].contains(&value)
 }
 
 /// Converts a wavelength from nanometres to micrometres; `None` unless it is a positive number.

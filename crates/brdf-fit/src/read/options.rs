@@ -5,6 +5,21 @@ use std::path::Path;
 use super::error::ReadError;
 use crate::scan::{Convention, Format, Side};
 
+/// The keys of comments that the readings of a table depend on.
+pub const DECLARED_KEYS: [&str; 11] = [
+    "quantity",
+    "unit",
+    "factor",
+    "missing",
+    "psi_deg",
+    "phi_deg",
+    "wavelength_um",
+    "wavelength_nm",
+    "refractive_index",
+    "polarisation",
+    "columns",
+];
+
 /// How a file is read.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadOptions {
@@ -19,6 +34,12 @@ pub struct ReadOptions {
     /// How many readings of each wavelength are kept, spread evenly over the directions. `None` keeps
     /// all.
     pub sample: Option<usize>,
+    /// What columns of a table are whose names do not say it: the name in the file, and a name of the
+    /// [table](crate::read::csv), such as `Incident` and `psi_deg`.
+    pub columns: Vec<(String, String)>,
+    /// Keys and values in place of those of the comments of a file, such as `quantity` and
+    /// `reflectance_factor`; see [`DECLARED_KEYS`].
+    pub declarations: Vec<(String, String)>,
 }
 
 impl ReadOptions {

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::Parser;
 
 use super::values::{
-    DEFAULT_LIMIT, ModelArgument, ReadingWeights, methods_or_none, parse_energy_limit, parse_limit,
-    parse_model,
+    DEFAULT_LIMIT, ModelArgument, Pairs, ReadingWeights, declaration, methods_or_none, pairs,
+    parse_energy_limit, parse_limit, parse_model,
 };
 use crate::fit::FitOptions;
 use crate::fit::robust::Loss;
@@ -128,6 +128,19 @@ pub(in crate::cli) struct Arguments {
     /// then by extension]
     #[arg(long, value_name = "FORMAT")]
     pub(super) format: Option<Format>,
+
+    /// What columns of a table are whose names do not say it, as NAME=ROLE pairs such as
+    /// "Incident=psi_deg,R=reflectance_factor_percent"
+    ///
+    /// A role is a name that the table could have: psi_deg, theta_rad, phi_deg, mu_in, brdf_per_sr,
+    /// reflectance_factor_percent, log10_brdf, wavelength_nm, sigma_per_sr, n; or ignore.
+    #[arg(long, value_name = "PAIRS", value_parser = pairs)]
+    pub(super) columns: Option<Pairs>,
+
+    /// State a key in place of the comments of the files, such as quantity=reflectance_factor,
+    /// unit=percent, missing=-999, psi_deg=30 or wavelength_nm=632.8; may be repeated
+    #[arg(long, value_name = "KEY=VALUE", value_parser = declaration)]
+    pub(super) declare: Vec<(String, String)>,
 
     /// Fit only this many readings of each wavelength, spread evenly over the angles theta_h,
     /// theta_d and phi_d between half vector and directions [default: all]

@@ -134,6 +134,8 @@ impl Arguments {
                 .or(sides.map(|sides| sides.theta_positive)),
             phi_zero: self.phi_zero.or(sides.map(|sides| sides.phi_zero)),
             sample: self.sample.and_then(|count| usize::try_from(count).ok()),
+            columns: self.columns.clone().unwrap_or_default().0,
+            declarations: self.declare.clone(),
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use crate::read::angles::AngleUnit;
 use crate::read::comments;
-use crate::read::conversion::Quantity;
+use crate::read::conversion::{Kind, Quantity};
 use crate::read::error::ReadError;
+use crate::read::names::quantity_named;
 use crate::read::number::{Field, is_angle, micrometres};
 use crate::read::options::ReadOptions;
 use crate::read::text::Text;
@@ -36,6 +37,8 @@ pub(super) struct Header {
     pub(super) given: [Option<f64>; 4],
     pub(super) unit: Option<AngleUnit>,
     pub(super) quantity: Quantity,
+    /// Whether a key gives the quantity.
+    states_quantity: bool,
     wavelength_um: Option<f64>,
     pub(super) refractive_index: Option<RefractiveIndex>,
     /// The number of rows that the file states.
@@ -61,7 +64,8 @@ impl Header {
             columns: Vec::new(),
             given: [None; 4],
             unit: None,
-            quantity: Quantity::Brdf,
+            quantity: Quantity::BRDF,
+            states_quantity: false,
             wavelength_um: None,
             refractive_index: None,
             count: None,
@@ -109,6 +113,7 @@ impl Header {
             "quantity" | "meas_name" => {
                 if let Some(quantity) = quantity_of(text, line, &value)? {
                     self.quantity = quantity;
+                    self.states_quantity = true;
                 }
             }
             "refractive_index" => {
@@ -164,6 +169,14 @@ impl Header {
             let mut left = (0..self.columns.len()).filter(|&i| unused(&self.columns[i]));
             if let (Some(only), None) = (left.next(), left.next()) {
                 self.columns[only] = Column::Value(None);
+                let name = &self.names[only];
+                if quantity_of(text, self.number, name)?.is_none() && !self.states_quantity {
+                    let message = format!(
+                        "the quantity of the column {name} is not known: expected a name such as BRDF, \
+                         CCBRDF, REFLECTANCE_FACTOR, R% or LOG_BRDF, or a line QUANTITY with one"
+                    );
+                    return Err(text.line_error(self.number, message));
+                }
             }
         }
         let value = self
@@ -175,7 +188,7 @@ impl Header {
         };
         // A column that is called BRDF may have another quantity that a key has given.
         let named = quantity_of(text, self.number, name)?;
-        if let Some(quantity) = named.filter(|quantity| *quantity != Quantity::Brdf) {
+        if let Some(quantity) = named.filter(|quantity| *quantity != Quantity::BRDF) {
             self.quantity = quantity;
         }
         Ok(())
@@ -361,12 +374,16 @@ fn quantity_of(text: &Text<'_>, line: u64, name: &str) -> Result<Option<Quantity
         return Err(text.line_error(line, message));
     }
     if has("dsf") || has("ars") || has("cos") || parts.any(|part| part.starts_with("cosine")) {
-        return Ok(Some(Quantity::BrdfCos));
+        return Ok(Some(Quantity::of(Kind::BrdfCos)));
+    }
+    if let Some(quantity) = quantity_named(name) {
+        return Ok(Some(quantity));
     }
     let mut parts = lower.split(|c: char| !c.is_alphanumeric());
     Ok(parts.find_map(|part| match part {
-        "brdf" | "bsdf" => Some(Quantity::Brdf),
-        "brf" => Some(Quantity::ReflectanceFactor),
+        // Cornell calls the column of a BRDF without wavelengths so.
+        "brdf" | "bsdf" | "integrated" => Some(Quantity::BRDF),
+        "brf" => Some(Quantity::of(Kind::ReflectanceFactor)),
         _ => None,
     }))
 }

@@ -44,11 +44,13 @@
 //!
 //! | name | value | conversion |
 //! |---|---|---|
-//! | `BRDF`, `BSDF`, or none | f_r | none |
+//! | `BRDF`, `BSDF`, `Integrated` | f_r | none |
 //! | `BRDF_COS`, `DSF`, `ARS`, or one with `cosine` | f_r cos theta_s | f_r = value / cos theta_s |
-//! | `BRF` | reflectance factor, pi f_r | f_r = value / pi |
+//! | `BRF`, `REFLECTANCE_FACTOR`, `RADIANCE_FACTOR` | reflectance factor, pi f_r | f_r = value / pi |
+//! | `R%`, `REFLECTANCE_FACTOR_PERCENT` | reflectance factor in percent | f_r = value / (100 pi) |
+//! | `LOG_BRDF`, `BRDF_DB` | decadic logarithm, decibels | f_r = 10^value, 10^(value/10) |
 //!
-//! `BTDF` is an error, and so are the display colours `R,G,B`.
+//! A single column of another name is an error unless a key gives its quantity. `BTDF` is an error, and so are the display colours `R,G,B`.
 //!
 //! Sources: "Data file formats" of graphics.cornell.edu/online/measurements/reflectance; libbsdf's
 //! `AstmReader` and ALTA's `data_astm`, which read these files; the public abstracts of ASTM E1392-96
@@ -188,6 +190,13 @@ mod tests {
         assert_eq!(with("", "BRDF"), 0.5);
         assert_eq!(with("", "Integrated"), 0.5);
         assert_eq!(with("", "BRF"), 0.5 / PI);
+        assert_eq!(with("", "REFLECTANCE_FACTOR"), 0.5 / PI);
+        assert_eq!(with("", "R%"), 0.5 / 100.0 / PI);
+        assert_eq!(with("", "LOG_BRDF"), 10_f64.powf(0.5));
+        assert!((with("", "CCBRDF") - 1.0).abs() < 1e-15);
+        assert_eq!(with("MEAS_NAME BRF\n", "value"), 0.5 / PI);
+        let unknown = "VARS theta_i theta_s reflectance\n30 60 0.5\n";
+        assert!(error(unknown).contains("the quantity of the column reflectance is not known"));
     }
 
     #[test]

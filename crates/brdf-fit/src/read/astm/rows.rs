@@ -156,7 +156,7 @@ impl Rows {
                 theta,
                 phi,
                 brdf: header.quantity.to_brdf(value, theta),
-                sigma: sigma.map(|sigma| header.quantity.to_brdf(sigma, theta)),
+                sigma: sigma.map(|sigma| header.quantity.deviation(sigma, value, theta)),
             };
             readings.extend(values.iter().zip(&wavelengths).map(reading));
         }

@@ -1,173 +1,491 @@
-//! The lines before the rows: comments, and the header that names the columns.
+//! The lines before the rows: comments, lines of free text, and the header that names the columns.
 
 use crate::read::comments::{Comments, comment_of};
 use crate::read::error::ReadError;
-use crate::read::fields;
+use crate::read::fields::Separator;
+use crate::read::names::{AngleForm, LengthUnit, Role};
+use crate::read::options::ReadOptions;
 use crate::read::text::{Text, quotable};
 
-pub(super) const WAVELENGTH: &str = "wavelength_um";
-pub(super) const PSI: &str = "psi_deg";
-pub(super) const THETA: &str = "theta_deg";
-pub(super) const PHI: &str = "phi_deg";
-pub(super) const BRDF: &str = "brdf_per_sr";
-pub(super) const SIGMA: &str = "sigma_per_sr";
-pub(super) const INDEX: &str = "n";
-const KNOWN: [&str; 7] = [WAVELENGTH, PSI, THETA, PHI, BRDF, SIGMA, INDEX];
-const REQUIRED: [&str; 3] = [PSI, THETA, BRDF];
+/// How many lines are searched for the header.
+const SEARCHED_LINES: usize = 200;
 
-/// Whether a line names the columns. Some programs write the header behind a `#`.
+/// The names of the columns as the project writes them.
+const OWN_NAMES: [&str; 7] = [
+    "wavelength_um",
+    "psi_deg",
+    "theta_deg",
+    "phi_deg",
+    "brdf_per_sr",
+    "sigma_per_sr",
+    "n",
+];
+
+/// Whether a line names the columns of a table. Some programs write the header behind a `#`.
 pub(in crate::read) fn is_header(line: &[u8]) -> bool {
-    names_the_columns(comment_of(line).unwrap_or(line))
+    let line = comment_of(line).unwrap_or(line);
+    // Lines of numbers are not looked at closely.
+    let is_letter = |byte: &&u8| !byte.is_ascii() || byte.is_ascii_alphabetic();
+    if line.iter().filter(is_letter).take(6).count() < 6 {
+        return false;
+    }
+    header_of(line, &[]).is_some_and(|(_, columns)| is_complete(&columns, true))
 }
 
-fn names_the_columns(text: &[u8]) -> bool {
-    let text = String::from_utf8_lossy(text).to_lowercase();
-    REQUIRED.iter().all(|name| text.contains(name))
+/// The columns of a line and their separator, with the separator that gives the most columns with a
+/// role; `None` where no column has one.
+fn header_of(line: &[u8], renamed: &[(String, String)]) -> Option<(Separator, Vec<Column>)> {
+    let split = |separator: Separator| {
+        let mut fields = Vec::new();
+        separator.split(line, &mut fields).ok()?;
+        let columns: Vec<Column> = fields
+            .iter()
+            .map(|name| Column::new(name, renamed))
+            .collect();
+        let known = columns
+            .iter()
+            .filter(|column| column.role.is_some())
+            .count();
+        (known > 0).then_some((known, separator, columns))
+    };
+    let found = Separator::ALL.into_iter().filter_map(split);
+    // Of separators that give as many, the first one is taken.
+    let best = found.rev().max_by_key(|(known, ..)| *known);
+    best.map(|(_, separator, columns)| (separator, columns))
+}
+
+/// Whether the columns have angles and a reading; the incidence angle may also stand in a comment.
+fn is_complete(columns: &[Column], needs_psi: bool) -> bool {
+    let has = |wanted: fn(&Role) -> bool| {
+        let mut roles = columns.iter().filter_map(|column| column.role.as_ref());
+        roles.any(wanted)
+    };
+    let zeniths = |role: &&Column| {
+        matches!(
+            role.role,
+            Some(Role::Psi(_) | Role::Theta(_) | Role::ThetaS(_))
+        )
+    };
+    let zeniths = columns.iter().filter(zeniths).count();
+    let reading = has(|role| {
+        matches!(
+            role,
+            Role::Value(_) | Role::Channel(_) | Role::Polarised(..)
+        )
+    }) || has(|role| *role == Role::Signal) && has(|role| *role == Role::Reference);
+    reading && zeniths >= if needs_psi { 2 } else { 1 }
+}
+
+/// A column by its header.
+#[derive(Debug, Clone)]
+pub(super) struct Column {
+    /// The name as messages quote it.
+    pub(super) name: String,
+    pub(super) role: Option<Role>,
+    renamed: bool,
+}
+
+impl Column {
+    fn new(field: &[u8], renamed: &[(String, String)]) -> Self {
+        let name = String::from_utf8_lossy(field);
+        let name = name.trim_matches(|c: char| c.is_whitespace() || c == '"');
+        let other = renamed
+            .iter()
+            .find(|(from, _)| from.trim().eq_ignore_ascii_case(name));
+        let role = Role::named(other.map_or(name, |(_, to)| to));
+        Self {
+            name: quotable(name.as_bytes()),
+            role,
+            renamed: other.is_some(),
+        }
+    }
 }
 
 /// The comments and the header of a table.
-pub(super) struct Preamble<'a> {
+pub(super) struct Preamble {
     pub(super) comments: Comments,
-    pub(super) header: Header<'a>,
+    pub(super) header: Header,
     /// The number of lines after the header, and so the largest possible number of readings.
     pub(super) lines_after: usize,
+    /// The lines of free text before the header.
+    pub(super) skipped: usize,
 }
 
-impl<'a> Preamble<'a> {
+impl Preamble {
     /// Looks at each line of the text once: comments may also follow the header.
     ///
     /// # Errors
     ///
     /// A line is too long, a comment is not valid, or there is no header.
-    pub(super) fn read(text: &Text<'a>) -> Result<Self, ReadError> {
-        let mut comments = Comments::default();
-        let mut header = None;
+    pub(super) fn read(text: &Text<'_>, options: &ReadOptions) -> Result<Self, ReadError> {
+        let mut comments = Comments::declared(text, &options.declarations)?;
+        let mut search = Search::default();
         let mut lines_after = 0;
         for (number, line) in text.lines() {
             text.check_length(number, line)?;
-            match comment_of(line) {
-                Some(comment) if header.is_none() && names_the_columns(comment) => {
-                    header = Some(Header::new(number, comment));
+            let comment = comment_of(line);
+            if search.header.is_none() {
+                search.take(
+                    number,
+                    comment.unwrap_or(line),
+                    comment.is_some(),
+                    &options.columns,
+                );
+                if search.header.is_some() {
+                    continue;
                 }
+            }
+            match comment {
                 Some(comment) => comments.add(text, number, comment)?,
-                None if header.is_some() => lines_after += 1,
-                None if line.trim_ascii().is_empty() || line.starts_with(b"sep=") => {}
-                None => header = Some(Header::new(number, line)),
+                None => lines_after += usize::from(search.header.is_some()),
             }
         }
-        let header = header.ok_or_else(|| {
-            text.error("has no header: expected a line with psi_deg, theta_deg and brdf_per_sr")
-        })?;
+        let Search {
+            header,
+            skipped,
+            best,
+        } = search;
+        let Some(header) = header else {
+            return Err(no_header(text, best.as_ref()));
+        };
+        header.check_names(text, &options.columns)?;
         Ok(Self {
             comments,
             header,
             lines_after,
+            skipped,
         })
     }
+}
+
+/// The search for the header.
+#[derive(Default)]
+struct Search {
+    header: Option<Header>,
+    /// The lines of text before the header.
+    skipped: usize,
+    /// The line with the most columns that have a role.
+    best: Option<Header>,
+}
+
+impl Search {
+    fn take(&mut self, number: u64, line: &[u8], is_comment: bool, renamed: &[(String, String)]) {
+        if line.trim_ascii().is_empty()
+            || line.starts_with(b"sep=")
+            || self.skipped > SEARCHED_LINES
+        {
+            return;
+        }
+        let found = header_of(line, renamed).map(|(separator, columns)| Header {
+            number,
+            separator,
+            columns,
+        });
+        match found {
+            // A sentence may contain the names of columns, but a header has nothing else.
+            Some(header) if is_complete(&header.columns, is_comment) => {
+                self.header = Some(header);
+                return;
+            }
+            Some(header) if !is_comment => {
+                let more = |best: &Header| header.known() > best.known();
+                if self.best.as_ref().is_none_or(more) {
+                    self.best = Some(header);
+                }
+            }
+            _ => {}
+        }
+        self.skipped += usize::from(!is_comment);
+    }
+}
+
+/// The error of a text without a header: what was understood of the line that is nearest to one.
+fn no_header(text: &Text<'_>, best: Option<&Header>) -> ReadError {
+    const EXPECTED: &str = "expected a line that names the columns, such as psi_deg, theta_deg and \
+                            brdf_per_sr";
+    let Some(header) = best else {
+        return text.error(format!("has no header: {EXPECTED}"));
+    };
+    let missing = header.missing().join(" and ");
+    let message = format!("no column for {missing}: {}", header.understood());
+    text.line_error(header.number, message)
 }
 
 /// The line that names the columns.
-pub(super) struct Header<'a> {
+#[derive(Debug, Clone)]
+pub(super) struct Header {
     /// The number of the line, counted from 1.
     pub(super) number: u64,
-    /// The text without a leading `#`.
-    line: &'a [u8],
-    pub(super) separator: u8,
+    pub(super) separator: Separator,
+    pub(super) columns: Vec<Column>,
 }
 
-impl<'a> Header<'a> {
-    fn new(number: u64, line: &'a [u8]) -> Self {
-        Self {
-            number,
-            line,
-            separator: separator_of(line),
-        }
+impl Header {
+    fn known(&self) -> usize {
+        self.columns
+            .iter()
+            .filter(|column| column.role.is_some())
+            .count()
     }
 
-    /// The columns that the header names.
-    ///
+    /// What is missing of a table of readings, in words.
+    fn missing(&self) -> Vec<&'static str> {
+        let has = |wanted: fn(&Role) -> bool| {
+            self.columns
+                .iter()
+                .filter_map(|c| c.role.as_ref())
+                .any(wanted)
+        };
+        let wanted = [
+            (
+                "the incidence angle (psi_deg)",
+                has(|role| matches!(role, Role::Psi(_) | Role::ThetaS(_))),
+            ),
+            (
+                "the view angle (theta_deg)",
+                has(|role| matches!(role, Role::Theta(_) | Role::ThetaS(_))),
+            ),
+            (
+                "the reading (brdf_per_sr)",
+                has(|role| {
+                    matches!(
+                        role,
+                        Role::Value(_) | Role::Channel(_) | Role::Polarised(..) | Role::Signal
+                    )
+                }),
+            ),
+        ];
+        wanted
+            .into_iter()
+            .filter(|(_, has)| !has)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
+    /// What was understood of each column, and how to say what it is.
+    pub(super) fn understood(&self) -> String {
+        let column = |column: &Column| match column.role {
+            Some(role) => format!("\"{}\" is {}", column.name, role.in_words()),
+            None => format!("\"{}\" is not known", column.name),
+        };
+        let columns: Vec<String> = self.columns.iter().take(12).map(column).collect();
+        let example = self.columns.iter().find(|column| column.role.is_none());
+        let example = example.map_or("R", |column| column.name.as_str());
+        format!(
+            "{}; say what a column is by its name, or by an option such as \
+             \"{example}=reflectance_factor_percent\"",
+            columns.join(", ")
+        )
+    }
+
     /// # Errors
     ///
-    /// A required column is missing, a known column is given twice, or a quote is not closed.
-    pub(super) fn columns(&self, text: &Text<'_>) -> Result<Columns, ReadError> {
-        let mut fields = Vec::new();
-        fields::split(self.line, self.separator, &mut fields)
-            .map_err(str::to_owned)
-            .and_then(|()| Columns::find(&fields))
-            .map_err(|message| text.line_error(self.number, message))
+    /// The options name a column that the header does not have.
+    fn check_names(&self, text: &Text<'_>, renamed: &[(String, String)]) -> Result<(), ReadError> {
+        for (name, role) in renamed {
+            if Role::named(role).is_none() {
+                let message = format!(
+                    "the role \"{role}\" of the column \"{name}\" is not known: expected one such as \
+                     psi_deg, theta_rad, brdf_per_sr, reflectance_factor_percent, wavelength_nm or ignore"
+                );
+                return Err(text.line_error(self.number, message));
+            }
+            if !self
+                .columns
+                .iter()
+                .any(|column| column.name.eq_ignore_ascii_case(name.trim()))
+            {
+                let names: Vec<_> = self
+                    .columns
+                    .iter()
+                    .map(|column| column.name.as_str())
+                    .collect();
+                let message = format!("no column \"{name}\": the columns are {}", names.join(", "));
+                return Err(text.line_error(self.number, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// The sentence that reports the columns whose names are not the project's own; `None` where there is
+    /// none.
+    pub(super) fn sentence(&self) -> Option<String> {
+        let foreign = self.columns.iter().filter(|column| {
+            let own = OWN_NAMES
+                .iter()
+                .any(|own| column.name.eq_ignore_ascii_case(own));
+            column
+                .role
+                .is_some_and(|role| !matches!(role, Role::Channel(_) | Role::Label))
+                && (!own || column.renamed)
+        });
+        let words: Vec<String> = foreign
+            .filter_map(|column| {
+                Some(format!(
+                    "{} is the {}",
+                    column.name,
+                    column.role?.in_words()
+                ))
+            })
+            .map(|sentence| sentence.replace("is the the ", "is the "))
+            .collect();
+        (!words.is_empty()).then(|| words.join(", "))
+    }
+
+    /// The names of the columns that are not used.
+    pub(super) fn names_without_use(&self) -> Vec<String> {
+        let unused = |column: &&Column| matches!(column.role, None | Some(Role::Label));
+        let unused = self.columns.iter().filter(unused);
+        unused
+            .map(|column| column.name.to_lowercase())
+            .filter(|name| !name.is_empty())
+            .collect()
+    }
+
+    /// # Errors
+    ///
+    /// Two columns have one role, or a role is missing.
+    pub(super) fn roles(&self, text: &Text<'_>) -> Result<Roles, ReadError> {
+        Roles::find(&self.columns).map_err(|message| text.line_error(self.number, message))
     }
 }
 
-/// The separator that gives the most known columns; a comma where several give as many.
-fn separator_of(header: &[u8]) -> u8 {
-    let known = |separator: u8| {
-        let fields = header.split(move |&byte| byte == separator);
-        fields
-            .filter(|field| KNOWN.contains(&column_name(field).as_str()))
-            .count()
-    };
-    let separators = *b"\t;,";
-    separators
-        .into_iter()
-        .max_by_key(|&separator| known(separator))
-        .unwrap_or(b',')
-}
-
-/// The name of a column in lower case, without quotes.
-fn column_name(field: &[u8]) -> String {
-    let name = String::from_utf8_lossy(field);
-    name.trim_matches(|c: char| c.is_ascii_whitespace() || c == '"')
-        .to_lowercase()
-}
+/// The columns of the angles, each with its unit.
+pub(super) type AngleColumn = (usize, AngleForm);
 
 /// The position of each quantity in a row.
-pub(super) struct Columns {
-    pub(super) count: usize,
-    pub(super) psi: usize,
-    pub(super) theta: usize,
-    pub(super) brdf: usize,
-    pub(super) wavelength: Option<usize>,
-    pub(super) phi: Option<usize>,
+pub(super) struct Roles {
+    pub(super) psi: Option<AngleColumn>,
+    pub(super) theta: AngleColumn,
+    pub(super) source_azimuth: Option<AngleColumn>,
+    pub(super) view_azimuth: Option<AngleColumn>,
+    pub(super) wavelength: Option<(usize, LengthUnit)>,
     pub(super) sigma: Option<usize>,
     pub(super) n: Option<usize>,
-    /// The names of the columns that are not read.
-    pub(super) ignored: Vec<String>,
+    pub(super) readings: Readings,
+    /// The columns that are not used and are not labels: they may separate readings of one geometry.
+    pub(super) unknown: Vec<usize>,
 }
 
-impl Columns {
-    fn find(header: &[&[u8]]) -> Result<Self, String> {
-        let names: Vec<String> = header.iter().map(|field| column_name(field)).collect();
-        let twice = |name: &&&str| names.iter().filter(|other| other == *name).count() > 1;
-        if let Some(name) = KNOWN.iter().find(twice) {
-            return Err(format!("column {name} is given twice"));
-        }
-        let position = |name: &str| names.iter().position(|n| n == name);
-        let missing: Vec<&str> = REQUIRED
-            .into_iter()
-            .filter(|name| position(name).is_none())
-            .collect();
-        let (Some(psi), Some(theta), Some(brdf)) = (position(PSI), position(THETA), position(BRDF))
-        else {
-            return Err(format!(
-                "missing column {}: expected a header with psi_deg, theta_deg and brdf_per_sr, found \"{}\"",
-                missing.join(" and "),
-                quotable(names.join(", ").as_bytes()),
-            ));
+/// The columns of the readings.
+pub(super) enum Readings {
+    /// One reading a row.
+    One(usize),
+    /// A reading with each polarisation, s first.
+    Polarised(usize, usize),
+    /// The signal of the sample and that of the white standard.
+    Ratio(usize, usize),
+    /// A reading at each wavelength in um.
+    Channels(Vec<(usize, f64)>),
+}
+
+impl Roles {
+    fn find(columns: &[Column]) -> Result<Self, String> {
+        let all = |wanted: &dyn Fn(&Role) -> bool| -> Vec<usize> {
+            let columns = columns.iter().enumerate();
+            let found = columns.filter(|(_, column)| column.role.as_ref().is_some_and(wanted));
+            found.map(|(i, _)| i).collect()
         };
+        let one = |wanted: &dyn Fn(&Role) -> bool| match all(wanted)[..] {
+            [] => Ok(None),
+            [only] => Ok(Some(only)),
+            [first, second, ..] => {
+                let (first, second) = (&columns[first], &columns[second]);
+                let words = first.role.map(Role::in_words).unwrap_or_default();
+                Err(format!(
+                    "the {words} is given twice, by \"{}\" and by \"{}\"",
+                    first.name, second.name
+                ))
+            }
+        };
+        let angle = |found: Option<usize>| {
+            found.and_then(|i| match columns[i].role? {
+                Role::Psi(form)
+                | Role::Theta(form)
+                | Role::ThetaS(form)
+                | Role::SourceAzimuth(form)
+                | Role::ViewAzimuth(form)
+                | Role::PhiS(form) => Some((i, form)),
+                _ => None,
+            })
+        };
+        // "s" is the scatter where the incidence has its own column, and the source where the view has.
+        let s_is_source = all(&|role| matches!(role, Role::Psi(_))).is_empty();
+        let psi = one(&|role| {
+            matches!(role, Role::Psi(_)) || s_is_source && matches!(role, Role::ThetaS(_))
+        })?;
+        let theta = one(&|role| {
+            matches!(role, Role::Theta(_)) || !s_is_source && matches!(role, Role::ThetaS(_))
+        })?;
+        let source_azimuth = one(&|role| {
+            matches!(role, Role::SourceAzimuth(_)) || s_is_source && matches!(role, Role::PhiS(_))
+        })?;
+        let view_azimuth = one(&|role| {
+            matches!(role, Role::ViewAzimuth(_)) || !s_is_source && matches!(role, Role::PhiS(_))
+        })?;
+        let wavelength = one(&|role| matches!(role, Role::Wavelength(_)))?;
+        let wavelength = wavelength.and_then(|i| match columns[i].role? {
+            Role::Wavelength(unit) => Some((i, unit)),
+            _ => None,
+        });
+        let value = one(&|role| matches!(role, Role::Value(_)))?;
+        let polarised = all(&|role| matches!(role, Role::Polarised(..)));
+        let signal = one(&|role| *role == Role::Signal)?;
+        let reference = one(&|role| *role == Role::Reference)?;
+        let channels: Vec<(usize, f64)> = columns
+            .iter()
+            .enumerate()
+            .filter_map(|(i, column)| match column.role? {
+                Role::Channel(um) => Some((i, um)),
+                _ => None,
+            })
+            .collect();
+        let readings = match (
+            value,
+            &polarised[..],
+            signal.zip(reference),
+            channels.is_empty(),
+        ) {
+            (Some(value), [], None, true) => Readings::One(value),
+            (None, [first, second], None, true) => polarised_pair(columns, *first, *second)?,
+            (None, [], Some((signal, reference)), true) => Readings::Ratio(signal, reference),
+            (None, [], None, false) => Readings::Channels(channels),
+            _ => {
+                return Err(
+                    "the reading is given in several ways: expected one column, a column for \
+                             each wavelength, brdf_s and brdf_p, or signal and reference"
+                        .to_owned(),
+                );
+            }
+        };
+        if let (Readings::Channels(_), Some((i, _))) = (&readings, wavelength) {
+            return Err(format!(
+                "\"{}\" is a wavelength, and the readings have a column for each wavelength",
+                columns[i].name
+            ));
+        }
         Ok(Self {
-            count: names.len(),
-            psi,
-            theta,
-            brdf,
-            wavelength: position(WAVELENGTH),
-            phi: position(PHI),
-            sigma: position(SIGMA),
-            n: position(INDEX),
-            ignored: names
-                .iter()
-                .filter(|name| !name.is_empty() && !KNOWN.contains(&name.as_str()))
-                .cloned()
+            psi: angle(psi),
+            theta: angle(theta).ok_or("no column for the view angle (theta_deg)")?,
+            source_azimuth: angle(source_azimuth),
+            view_azimuth: angle(view_azimuth),
+            wavelength,
+            sigma: one(&|role| *role == Role::Sigma)?,
+            n: one(&|role| *role == Role::Index)?,
+            readings,
+            unknown: (0..columns.len())
+                .filter(|&i| columns[i].role.is_none() && !columns[i].name.is_empty())
                 .collect(),
         })
+    }
+}
+
+fn polarised_pair(columns: &[Column], first: usize, second: usize) -> Result<Readings, String> {
+    use crate::read::names::Polarisation;
+    let is_s = |i: usize| matches!(columns[i].role, Some(Role::Polarised(Polarisation::S, _)));
+    match (is_s(first), is_s(second)) {
+        (true, false) => Ok(Readings::Polarised(first, second)),
+        (false, true) => Ok(Readings::Polarised(second, first)),
+        _ => Err("one polarisation is given twice: expected brdf_s and brdf_p".to_owned()),
     }
 }

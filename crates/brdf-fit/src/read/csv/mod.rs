@@ -1,44 +1,75 @@
-//! The project's own format: a table of readings as text, separated by commas, semicolons or tabs.
+//! A table of readings as text, with a row for each pair of directions.
+//!
+//! The project's own names of the columns are
 //!
 //! | column | unit and domain | |
 //! |---|---|---|
-//! | `psi_deg` | deg, [0, 90) | incidence zenith angle psi |
-//! | `theta_deg` | deg, (-90, 90) | view zenith angle theta, signed in the plane of incidence |
+//! | `psi_deg` | deg | incidence zenith angle psi |
+//! | `theta_deg` | deg | view zenith angle theta, signed in the plane of incidence |
 //! | `brdf_per_sr` | 1/sr | the reading, in the quantity of the comments |
 //! | `wavelength_um` | um, > 0 | optional: wavelength |
 //! | `phi_deg` | deg | optional: view azimuth phi from the source's azimuth; 0 where it is missing |
 //! | `sigma_per_sr` | 1/sr, > 0 | optional, may be blank: standard deviation, in the quantity of the reading |
 //! | `n` | 1, [1, 1e5] | optional: refractive index, one value for each wavelength |
 //!
-//! Columns are found by their names, in any order. Other columns are not read, but listed in
-//! [`Measurements::ignored_columns`]. Lines that begin with `#` are comments: `# key: value` is kept as
-//! metadata, and a comment that names the columns is the header.
+//! Columns are found by their names, in any order, and other usual names are understood: `Incident angle`,
+//! `AOI (deg)`, `theta_i [rad]`, `mu_in` (a cosine), `theta_r`, `phi_i` and `phi_r`, `Wavelength (nm)`,
+//! `R%`, `log10_brdf`, `BRDF (dB)`. `brdf_s` and `brdf_p` are averaged to the unpolarised reading; `signal`
+//! and `reference`, the signal of a white standard, are divided to the reflectance factor. Columns that are
+//! named by a wavelength (`450nm`) hold the readings at that wavelength. What was understood is reported in
+//! [`Measurements::conversions`]. [`ReadOptions::columns`](super::ReadOptions::columns) says what a column
+//! is whose name does not.
 //!
-//! Two keys concern the readings:
-//! - `# quantity:` is `brdf` (f_r, the default), `brdf_cos` (f_r cos theta, divided by cos theta) or
-//!   `reflectance_factor` (pi f_r, divided by pi).
-//! - `# refractive_index:` is one number, such as `1.5`, or one for each wavelength in um, such as
+//! A column of another name is not used, and is listed in [`Measurements::ignored_columns`]; where it
+//! differs between readings of the same directions and wavelength, it is an error, because readings of
+//! different samples or polarisations must not be pooled.
+//!
+//! Fields are separated by tabs, semicolons, commas or spaces. Lines before the header that are no header
+//! are skipped and counted. Lines that begin with `#` are comments: `# key: value` is kept as metadata, and
+//! a comment that names the columns is the header. These keys concern the readings:
+//!
+//! - `quantity` is `brdf` (f_r, the default), `brdf_cos` (f_r cos theta, divided by cos theta),
+//!   `reflectance_factor` (pi f_r, divided by pi), `reflectance_factor_percent`, `log10_brdf` or `brdf_db`.
+//! - `unit` is `1/sr`, `percent`, `log10` or `dB`; `factor` multiplies the values.
+//! - `missing` is the number that stands for a reading that was not taken.
+//! - `psi_deg`, `phi_deg`, `wavelength_um` and `wavelength_nm` serve as the column of that name.
+//! - `polarisation` is `s` or `p`: of `brdf_s` and `brdf_p` that one is taken.
+//! - `refractive_index` is one number, such as `1.5`, or one for each wavelength in um, such as
 //!   `0.63=1.60,0.85=1.58`. The column `n` takes precedence.
 //!
-//! A decimal comma is accepted where the separator is not a comma, as are a byte order mark and the
-//! line ends of all systems.
+//! [`ReadOptions::declarations`](super::ReadOptions::declarations) states such keys in place of the file.
+//!
+//! Readings that were not taken (blank, `-`, `NaN`, `n/a`) and those at or beyond 90 deg are left out and
+//! counted. A negative incidence angle is on the other side of the normal: the view angle is mirrored. A
+//! decimal comma, the minus sign of typesetting and the exponent of Fortran (`1.1D-01`) are read, as are a
+//! byte order mark and the line ends of all systems.
 
 mod header;
 mod row;
 
+use std::collections::HashMap;
 use std::fs::File;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
 use std::path::Path;
 
-use super::comments::comment_of;
-use super::conversion::Quantity;
+use super::comments::{Comments, comment_of, number_of_key};
+use super::conversion::{BEYOND_HORIZON, Kind, NOT_TAKEN, Quantity, left_out};
 use super::error::ReadError;
-use super::fields;
+use super::names::{AngleForm, LengthUnit, Role};
+use super::number::{is_angle, is_wavelength};
+use super::options::ReadOptions;
 use super::text::{Text, read_bytes};
-use crate::scan::{Convention, Measurements};
+use crate::scan::{Convention, Measurement, Measurements};
 pub(super) use header::is_header;
-use header::{Header, Preamble};
-use row::{IndexColumn, Row};
+use header::{Header, Preamble, Readings, Roles};
+use row::{Found, IndexColumn, Reader, Row};
+
+/// Angles without a unit, all of which are below this, may be radians: a little above pi/2.
+const MAY_BE_RADIANS: f64 = 1.6;
+
+/// Wavelengths without a unit are in nm from this number on, and in um below.
+const LEAST_NANOMETRES: f64 = 100.0;
 
 impl Measurements {
     /// Reads a table in the model's angular convention. The [module](crate::read::csv) describes
@@ -117,50 +148,126 @@ fn read_all(
 ) -> Result<Measurements, ReadError> {
     let bytes = read_bytes(Vec::new(), reader, expected_size)
         .map_err(|error| ReadError::io(path, error))?;
-    read(Text::new(path, &bytes)?, convention)
+    let options = ReadOptions {
+        theta_positive: Some(convention.theta_positive),
+        phi_zero: Some(convention.phi_zero),
+        ..ReadOptions::default()
+    };
+    read(Text::new(path, &bytes)?, &options)
 }
 
 /// # Errors
 ///
 /// The text is not a table of readings.
-pub(super) fn read(text: Text<'_>, convention: Convention) -> Result<Measurements, ReadError> {
+pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
     let Preamble {
         comments,
         header,
         lines_after,
-    } = Preamble::read(&text)?;
-    let columns = header.columns(&text)?;
-    let quantity = comments.quantity.unwrap_or(Quantity::Brdf);
-    let mut readings = Vec::with_capacity(lines_after);
+        skipped,
+    } = Preamble::read(&text, options)?;
+    let reader = reader(&text, &header, &comments, options)?;
+    let mut found = Found::default();
+    found.readings.reserve(lines_after);
     let mut indices = IndexColumn::default();
+    let mut unknown = UnknownColumns::new(&reader.roles);
     for_each_row(&text, &header, |row| {
-        row.check_length(columns.count)?;
-        let reading = row.reading(&columns, quantity, convention)?;
-        if let Some(column) = columns.n {
-            indices.add(row, column, reading.wavelength_um)?;
+        row.check_length()?;
+        let before = found.readings.len();
+        reader.add(row, &mut found)?;
+        let added = &found.readings[before..];
+        if let (Some(column), Some(first)) = (reader.roles.n, added.first()) {
+            indices.add(row, column, first.wavelength_um)?;
         }
-        readings.push(reading);
+        unknown.add(row, added.len());
         Ok(())
     })?;
-    if readings.is_empty() {
-        return Err(text.line_error(header.number, "no readings follow the header"));
-    }
+    check_found(&text, &header, &reader, &mut found)?;
+    unknown.check(&text, &header, &found)?;
+    let conversions = conversions(&header, &reader, &found, skipped);
     Ok(Measurements {
         source: text.path.display().to_string(),
         metadata: comments.metadata,
         refractive_index: indices.refractive_index().or(comments.refractive_index),
-        ignored_columns: columns.ignored,
-        convention,
-        conversions: quantity.conversion().into_iter().collect(),
-        readings,
+        ignored_columns: header.names_without_use(),
+        convention: reader.convention,
+        conversions,
+        readings: found.readings,
         ..Measurements::default()
     })
+}
+
+/// How the rows are read, from the header and the comments.
+fn reader(
+    text: &Text<'_>,
+    header: &Header,
+    comments: &Comments,
+    options: &ReadOptions,
+) -> Result<Reader, ReadError> {
+    let roles = header.roles(text)?;
+    let of_header = |message: String| text.line_error(header.number, message);
+    let values = comments
+        .values(quantity(header, &roles))
+        .map_err(of_header)?;
+    let number =
+        |key, expected, accepts| number_of_key(text, &comments.metadata, key, expected, accepts);
+    let micrometres = number(
+        "wavelength_um",
+        "expected micrometres above 0",
+        is_wavelength,
+    )?;
+    let nanometres = number(
+        "wavelength_nm",
+        "expected nanometres above 0",
+        is_wavelength,
+    )?;
+    let psi_deg = number("psi_deg", "expected degrees between -90 and 90", |x| {
+        x.abs() < 90.0
+    })?;
+    if roles.psi.is_none() && psi_deg.is_none() {
+        let message = format!(
+            "no column for the incidence angle (psi_deg), and no line \"# psi_deg: 30\": {}",
+            header.understood()
+        );
+        return Err(of_header(message));
+    }
+    let polarisation = match comments.metadata.get("polarisation") {
+        None | Some("unpolarised" | "mean") => None,
+        Some("s") => Some(0),
+        Some("p") => Some(1),
+        Some(other) => {
+            let message = format!("polarisation: \"{other}\": expected s, p or mean");
+            return Err(text.error(message));
+        }
+    };
+    Ok(Reader {
+        values,
+        convention: options.convention(Convention::default()),
+        missing: comments.missing(),
+        polarisation,
+        psi_deg,
+        phi_deg: number("phi_deg", "expected degrees", is_angle)?,
+        wavelength_um: micrometres.or(nanometres.map(|nm| nm / 1000.0)),
+        roles,
+    })
+}
+
+/// The quantity of the readings by the names of their columns.
+fn quantity(header: &Header, roles: &Roles) -> Quantity {
+    match roles.readings {
+        Readings::One(column) => match header.columns[column].role {
+            Some(Role::Value(quantity)) => quantity,
+            _ => Quantity::BRDF,
+        },
+        Readings::Ratio(..) => Quantity::of(Kind::ReflectanceFactor),
+        Readings::Polarised(..) | Readings::Channels(_) => Quantity::BRDF,
+    }
 }
 
 /// Splits each line after the header that is neither blank nor a comment.
 fn for_each_row(
     text: &Text<'_>,
-    header: &Header<'_>,
+    header: &Header,
     mut take: impl FnMut(&Row<'_>) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     let mut fields = Vec::new();
@@ -169,8 +276,8 @@ fn for_each_row(
         if comment_of(line).is_some() {
             continue;
         }
-        fields::split(line, header.separator, &mut fields)
-            .map_err(|message| text.line_error(number, message))?;
+        let split = header.separator.split(line, &mut fields);
+        split.map_err(|message| text.line_error(number, message))?;
         if fields.iter().all(|field| field.trim_ascii().is_empty()) {
             continue;
         }
@@ -178,10 +285,185 @@ fn for_each_row(
             text,
             line: number,
             fields: &fields,
-            decimal_comma: header.separator != b',',
+            columns: &header.columns,
         })?;
     }
     Ok(())
+}
+
+/// Checks that there are readings and that their units are known, and converts wavelengths of which the
+/// header does not state the unit.
+fn check_found(
+    text: &Text<'_>,
+    header: &Header,
+    reader: &Reader,
+    found: &mut Found,
+) -> Result<(), ReadError> {
+    let problem = |message: String| Err(text.line_error(header.number, message));
+    if found.readings.is_empty() {
+        return problem(match (found.beyond, found.not_taken) {
+            (0, 0) => "no readings follow the header".to_owned(),
+            (0, count) => format!("none of the {count} readings was taken: every value is blank"),
+            (count, _) => format!(
+                "all {count} readings are at or beyond 90 deg from the normal: are zenith angles and \
+                 azimuths exchanged? {}",
+                header.understood()
+            ),
+        });
+    }
+    let roles = &reader.roles;
+    let zeniths = roles.psi.into_iter().chain([roles.theta]);
+    let mut unstated = zeniths.filter(|(_, form)| *form == AngleForm::Unstated);
+    if let Some((column, _)) = unstated.next() {
+        if found.largest_angle > 0.0 && found.largest_angle < MAY_BE_RADIANS {
+            let name = &header.columns[column].name;
+            return problem(format!(
+                "the unit of the angles is not known, and all are below {MAY_BE_RADIANS}: expected names \
+                 with a unit, such as \"{name}_rad\" or \"{name}_deg\""
+            ));
+        }
+    }
+    if let Some((column, LengthUnit::Unstated)) = roles.wavelength {
+        let wavelengths = || {
+            found
+                .readings
+                .iter()
+                .filter_map(|reading| reading.wavelength_um)
+        };
+        if wavelengths().all(|wavelength| wavelength >= LEAST_NANOMETRES) {
+            for reading in &mut found.readings {
+                reading.wavelength_um = reading.wavelength_um.map(|nm| nm / 1000.0);
+            }
+        } else if !wavelengths().all(|wavelength| wavelength < LEAST_NANOMETRES) {
+            let name = &header.columns[column].name;
+            return problem(format!(
+                "the unit of \"{name}\" is not known: expected \"{name}_um\" or \"{name}_nm\""
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The sentences that report what was understood, converted and left out.
+fn conversions(header: &Header, reader: &Reader, found: &Found, skipped: usize) -> Vec<String> {
+    let mut all: Vec<String> = header.sentence().into_iter().collect();
+    if let Some((_, LengthUnit::Unstated)) = reader.roles.wavelength {
+        let um = found
+            .readings
+            .iter()
+            .find_map(|reading| reading.wavelength_um);
+        all.extend(um.map(|um| format!("wavelengths are taken so that the first is {um} um")));
+    }
+    match (&reader.roles.readings, reader.polarisation) {
+        (Readings::Ratio(..), _) => {
+            all.push("signal / reference is taken as the reflectance factor".to_owned());
+        }
+        (Readings::Polarised(..), None) => {
+            all.push("the mean of s and p is taken as the unpolarised reading".to_owned());
+        }
+        (Readings::Polarised(..), Some(0)) => all.push("s-polarised readings alone".to_owned()),
+        (Readings::Polarised(..), Some(_)) => all.push("p-polarised readings alone".to_owned()),
+        (Readings::Channels(channels), _) => {
+            let count = channels.len();
+            let quantity = reader.values.quantity;
+            all.push(format!("{count} columns of wavelengths hold {quantity}"));
+        }
+        (Readings::One(_), _) => {}
+    }
+    all.extend(reader.values.conversions());
+    if found.mirrored > 0 {
+        let count = found.mirrored;
+        all.push(format!(
+            "{count} rows have a negative incidence angle: it is on the other side of the normal"
+        ));
+    }
+    all.extend(left_out(found.not_taken, NOT_TAKEN));
+    all.extend(left_out(found.beyond, BEYOND_HORIZON));
+    match skipped {
+        0 => {}
+        1 => all.push("1 line of text above the header is skipped".to_owned()),
+        count => all.push(format!(
+            "{count} lines of text above the header are skipped"
+        )),
+    }
+    if found.largest_angle > 0.5 && found.largest_angle < MAY_BE_RADIANS {
+        all.push(format!(
+            "all zenith angles are below {MAY_BE_RADIANS} deg: if they are radians, name the columns \
+             psi_rad and theta_rad"
+        ));
+    }
+    all
+}
+
+/// The content of the columns that are not used, of which each row keeps a hash.
+struct UnknownColumns<'a> {
+    columns: &'a [usize],
+    /// The line and the hash of each reading.
+    rows: Vec<(u64, u64)>,
+}
+
+impl<'a> UnknownColumns<'a> {
+    fn new(roles: &'a Roles) -> Self {
+        Self {
+            columns: &roles.unknown,
+            rows: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, row: &Row<'_>, readings: usize) {
+        if self.columns.is_empty() {
+            return;
+        }
+        let mut hasher = DefaultHasher::new();
+        for &column in self.columns {
+            row.fields
+                .get(column)
+                .copied()
+                .unwrap_or_default()
+                .hash(&mut hasher);
+        }
+        let row = (row.line, hasher.finish());
+        self.rows.extend(std::iter::repeat_n(row, readings));
+    }
+
+    /// # Errors
+    ///
+    /// The columns differ between readings of the same directions and wavelength.
+    fn check(&self, text: &Text<'_>, header: &Header, found: &Found) -> Result<(), ReadError> {
+        let mut first = HashMap::new();
+        for ((line, hash), reading) in self.rows.iter().zip(&found.readings) {
+            let (before, other) = *first.entry(geometry_key(reading)).or_insert((line, hash));
+            if other == hash {
+                continue;
+            }
+            let names = self
+                .columns
+                .iter()
+                .map(|&i| format!("\"{}\"", header.columns[i].name));
+            let names: Vec<_> = names.collect();
+            let message = format!(
+                "{} differs between the readings of the same directions on lines {} and {}: split the file, \
+                 or say that the column is a label, such as \"{}=ignore\"",
+                names.join(", "),
+                before,
+                line,
+                header.columns[self.columns[0]].name,
+            );
+            return Err(text.line_error(header.number, message));
+        }
+        Ok(())
+    }
+}
+
+/// What readings of the same directions and wavelength have in common.
+fn geometry_key(reading: &Measurement) -> [u64; 4] {
+    let wavelength = reading.wavelength_um.map_or(0, f64::to_bits);
+    [
+        wavelength,
+        reading.psi.to_bits(),
+        reading.theta.to_bits(),
+        reading.phi.to_bits(),
+    ]
 }
 
 #[cfg(test)]
@@ -287,20 +569,14 @@ mod tests {
         let row = |row: &str| error(format!("# sample: x\n{HEADER}10,20,0.1\n{row}\n"));
         assert_eq!(
             row("abc,0,0.1"),
-            "input, line 4, column psi_deg: \"abc\" is not a number: expected degrees from 0 to below 90"
+            "input, line 4, column psi_deg: \"abc\" is not a number: expected the incidence angle in degrees"
         );
-        assert_eq!(
-            row("90,0,0.1"),
-            "input, line 4, column psi_deg: \"90\" is out of range: expected degrees from 0 to below 90"
-        );
-        assert!(row("-1,0,0.1").contains("\"-1\" is out of range"));
-        assert!(row("0,-90,0.1").contains("column theta_deg: \"-90\" is out of range"));
-        assert!(row("0,0,NaN").contains("column brdf_per_sr: \"NaN\" is not a finite number"));
+        assert!(row("1e10,0,0.1").contains("column psi_deg: \"1e10\" is out of range"));
         assert!(row("0,0,-inf").contains("\"-inf\" is not a finite number"));
-        assert!(row("0,0").contains("column brdf_per_sr: \"\" is missing"));
+        assert!(row("0").contains("column theta_deg: \"\" is missing"));
         assert!(row("0,0,0.1,7").contains("line 4: 4 fields: expected 3"));
         assert!(row("0;0;0,1").contains("column psi_deg"));
-        assert!(row("0,0,\"0,1\"").contains("\"0,1\" is not a number"));
+        assert!(row("0,0,-999").contains("# missing: -999"));
     }
 
     #[test]
@@ -327,11 +603,15 @@ mod tests {
         assert!(error(" \n\n").contains("is empty"));
         assert!(error("# only: comments\n").contains("no header"));
         assert!(error(HEADER).contains("line 1: no readings follow the header"));
-        assert!(error("psi_deg,theta_deg\n1,2\n").contains("missing column brdf_per_sr"));
-        assert!(error("a;b\n1;2\n").contains("found \"a;b\""));
+        let no_reading = error("psi_deg,theta_deg,x\n1,2,3\n");
         assert!(
-            error("psi_deg,psi_deg,theta_deg,brdf_per_sr\n").contains("psi_deg is given twice")
+            no_reading.contains("no column for the reading (brdf_per_sr)")
+                && no_reading.contains("\"psi_deg\" is incidence angle in deg, ")
+                && no_reading.contains("\"x\" is not known"),
+            "{no_reading}"
         );
+        assert!(error("a;b\n1;2\n").contains("has no header"));
+        assert!(error("psi_deg,psi_deg,theta_deg,brdf_per_sr\n").contains("in deg is given twice"));
         assert!(error([0x7f, b'E', b'L', b'F', 0, 1]).contains("is binary data"));
         assert!(error(b"\xff\xfep\0").contains("UTF-16"));
         assert!(
@@ -402,6 +682,159 @@ mod tests {
         assert!(with("# quantity = btdf").contains("quantity: \"btdf\" is not known"));
         let text = format!("# quantity = brdf_cos\n{HEADER}1,60,0.5\n");
         assert!((scan(&text).readings()[0].brdf - 1.0).abs() < 1e-15);
+    }
+
+    /// The reading of psi = 10, theta = -20 deg and f_r = 0.25 in one row, and another in a second one.
+    fn first(text: &str) -> Measurement {
+        scan(text).readings()[0]
+    }
+
+    #[test]
+    fn other_names_units_and_quantities_give_the_same_reading() {
+        let expected = first("psi_deg,theta_deg,brdf_per_sr\n10,-20,0.25\n30,0,0.5\n");
+        for text in [
+            "Incident angle,Measure_angle,BRDF (1/sr)\n10,-20,0.25\n30,0,0.5\n",
+            "AOI (deg)\ttheta_r\tf_r\n10\t-20\t0.25\n30\t0\t0.5\n",
+            "theta_i theta_s  brdf\n10  -20  2.5D-01\n30 0 0.5\n",
+            "Printed by Lab 3\n\npsi_deg,theta_deg,brdf_per_sr\n10,\u{2212}20,0.25\n30,0,0.5\n",
+            "psi_deg,theta_deg,brdf_per_sr\n\"10\",\"-20\",\"0,25\"\n30,0,0.5\n",
+            "psi_rad,theta_rad,brdf\n0.17453292519943295,-0.3490658503988659,0.25\n1,0,0.5\n",
+            "psi_deg,theta_deg,R%\n10,-20,78.53981633974483\n30,0,1\n",
+            "psi_deg,theta_deg,log10_brdf\n10,-20,-0.6020599913279624\n30,0,1\n",
+            "# unit: dB\npsi_deg,theta_deg,brdf\n10,-20,-6.020599913279624\n30,0,1\n",
+            "# factor: 0.1\npsi_deg,theta_deg,brdf\n10,-20,2.5\n30,0,1\n",
+            "# psi_deg: 10\ntheta_deg,brdf_per_sr\n-20,0.25\n0,0.5\n",
+            "psi_deg,theta_deg,brdf_s,brdf_p\n10,-20,0.2,0.3\n30,0,1,1\n",
+            "psi_deg,theta_deg,signal,reference\n10,-20,7.853981633974483,10\n30,0,1,1\n",
+            "psi_deg,theta_deg,brdf_per_sr\n-10,20,0.25\n30,0,0.5\n",
+            "phi_i,theta_i,phi_r,theta_r,brdf\n90,10,270,20,0.25\n0,30,0,0,0.5\n",
+            "mu_in,mu_out,cosdphi,brdf\n0.984807753012208,0.9396926207859084,-1,0.25\n0.5,1,1,0.5\n",
+        ] {
+            let found = first(text);
+            let near = |a: f64, b: f64| (a - b).abs() < 1e-12;
+            assert!(
+                near(found.psi, expected.psi)
+                    && near(found.in_plane_theta().unwrap(), expected.theta)
+                    && near(found.brdf, 0.25),
+                "{text}: {found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn wavelengths_are_read_from_columns_names_and_comments() {
+        for (text, expected) in [
+            (
+                "psi_deg,theta_deg,450nm,0.65 um\n1,2,3,4\n",
+                vec![Some(0.45), Some(0.65)],
+            ),
+            (
+                "wavelength_nm,psi_deg,theta_deg,brdf\n630.79,1,2,3\n",
+                vec![Some(0.63079)],
+            ),
+            (
+                "Wavelength,psi_deg,theta_deg,brdf\n450,1,2,3\n",
+                vec![Some(0.45)],
+            ),
+            (
+                "lambda,psi_deg,theta_deg,brdf\n10.6,1,2,3\n",
+                vec![Some(10.6)],
+            ),
+            (
+                "# wavelength_nm: 532\npsi_deg,theta_deg,brdf\n1,2,3\n",
+                vec![Some(0.532)],
+            ),
+        ] {
+            assert_eq!(scan(text).wavelengths(), expected, "{text}");
+        }
+        let both = error("wavelength,psi_deg,theta_deg,brdf\n0.5,1,2,3\n500,1,2,3\n");
+        assert!(
+            both.contains("the unit of \"wavelength\" is not known"),
+            "{both}"
+        );
+    }
+
+    #[test]
+    fn what_is_ambiguous_is_an_error() {
+        let radians = error("theta_i,theta_r,brdf\n0.5,0.2,3\n");
+        assert!(
+            radians.contains("\"theta_i_rad\" or \"theta_i_deg\""),
+            "{radians}"
+        );
+        let exchanged = error("phi_i,theta_i,phi_o,theta_o,brdf\n75,-180,-80,0,1\n");
+        assert!(exchanged.contains("azimuths exchanged?"), "{exchanged}");
+        let percent = error("# unit: percent\npsi_deg,theta_deg,brdf\n1,2,3\n");
+        assert!(
+            percent.contains("quantity: reflectance_factor"),
+            "{percent}"
+        );
+        let twice = error("# quantity: brdf_cos\npsi_deg,theta_deg,R%\n1,2,3\n");
+        assert!(twice.contains("the values are f_r cos theta"), "{twice}");
+        let several = error("psi_deg,theta_deg,brdf,450nm\n1,2,3,4\n");
+        assert!(several.contains("in several ways"), "{several}");
+    }
+
+    #[test]
+    fn readings_of_different_samples_are_not_pooled() {
+        let table = "psi_deg,theta_deg,brdf,paint\n1,2,3,red\n1,3,3,blue\n1,2,4,blue\n";
+        let message = error(table);
+        assert!(
+            message.contains("\"paint\" differs") && message.contains("lines 2 and 4"),
+            "{message}"
+        );
+        assert_eq!(scan(&table.replace("paint", "repeat")).readings().len(), 3);
+        let label = ReadOptions {
+            columns: vec![("Paint".to_owned(), "ignore".to_owned())],
+            ..ReadOptions::default()
+        };
+        let scan = Measurements::from_bytes("a.csv", table.as_bytes(), &label).unwrap();
+        assert_eq!(scan.readings().len(), 3);
+        assert_eq!(scan.ignored_columns, ["paint"]);
+    }
+
+    #[test]
+    fn options_say_what_columns_are_and_what_comments_lack() {
+        let table = "# quantity: brdf\na,b,c\n10,60,50\n";
+        let named = |pairs: &[(&str, &str)]| {
+            pairs
+                .iter()
+                .map(|(a, b)| ((*a).to_owned(), (*b).to_owned()))
+                .collect()
+        };
+        let options = ReadOptions {
+            columns: named(&[("a", "psi_deg"), ("b", "theta_deg"), ("c", "brdf")]),
+            declarations: named(&[("quantity", "brdf_cos"), ("factor", "0.01")]),
+            ..ReadOptions::default()
+        };
+        let scan = Measurements::from_bytes("a.csv", table.as_bytes(), &options).unwrap();
+        assert!((scan.readings()[0].brdf - 1.0).abs() < 1e-14);
+        for (columns, expected) in [
+            (&[("d", "psi_deg")][..], "no column \"d\""),
+            (&[("a", "angle")], "the role \"angle\""),
+        ] {
+            let options = ReadOptions {
+                columns: [named(columns), options.columns.clone()].concat(),
+                ..options.clone()
+            };
+            let read = Measurements::from_bytes("a.csv", table.as_bytes(), &options);
+            let message = read.unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+
+    #[test]
+    fn readings_that_were_not_taken_or_are_below_the_horizon_are_counted() {
+        let scan = scan(
+            "# missing: -1\npsi_deg,theta_deg,brdf\n10,-90,0\n10,-80,NaN\n10,0,\n10,1,-1\n10,2,3\n",
+        );
+        assert_eq!(scan.readings().len(), 1);
+        assert_eq!(
+            scan.conversions[1..],
+            [
+                "3 readings not taken (no value) are left out",
+                "1 reading at or beyond 90 deg from the normal is left out"
+            ]
+        );
     }
 
     #[test]

@@ -1,13 +1,17 @@
-//! The rows of a table: a reading each, and the refractive index of its wavelength.
+//! The rows of a table: a reading each, or several, and the refractive index of their wavelength.
 
 use std::collections::BTreeMap;
 
 use brdf_core::check_refractive_index;
 
-use super::header::{BRDF, Columns, INDEX, PHI, PSI, SIGMA, THETA, WAVELENGTH};
-use crate::read::conversion::Quantity;
+use super::header::{AngleColumn, Column, Readings, Roles};
+use crate::read::conversion::Values;
 use crate::read::error::ReadError;
-use crate::read::number::{Field, is_deviation, is_reading, is_wavelength};
+use crate::read::names::{AngleForm, LengthUnit};
+use crate::read::number::{
+    Field, is_angle, is_deviation, is_reading, is_wavelength, looks_missing, micrometres,
+    was_not_taken,
+};
 use crate::read::text::Text;
 use crate::scan::{Convention, Measurement, RefractiveIndex};
 
@@ -17,20 +21,223 @@ pub(super) struct Row<'a> {
     /// The number of the line, counted from 1.
     pub(super) line: u64,
     pub(super) fields: &'a [&'a [u8]],
-    pub(super) decimal_comma: bool,
+    pub(super) columns: &'a [Column],
+}
+
+/// How the rows of a table are read.
+pub(super) struct Reader {
+    pub(super) roles: Roles,
+    pub(super) values: Values,
+    pub(super) convention: Convention,
+    /// The value that stands for a reading that was not taken.
+    pub(super) missing: Option<f64>,
+    /// The polarisation of which the readings are taken, 0 for s and 1 for p; `None` takes the mean.
+    pub(super) polarisation: Option<usize>,
+    /// What a comment states in place of a column: psi and phi in degrees, the wavelength in um.
+    pub(super) psi_deg: Option<f64>,
+    pub(super) phi_deg: Option<f64>,
+    pub(super) wavelength_um: Option<f64>,
+}
+
+/// What was found in the rows.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) readings: Vec<Measurement>,
+    pub(super) not_taken: usize,
+    pub(super) beyond: usize,
+    /// Rows with a negative incidence angle.
+    pub(super) mirrored: usize,
+    /// The largest absolute zenith angle, as it is written.
+    pub(super) largest_angle: f64,
+}
+
+/// The directions of a row.
+struct Directions {
+    psi: f64,
+    theta_deg: f64,
+    phi_deg: f64,
+}
+
+impl Reader {
+    /// Adds the readings of a row, converted to f_r and the model's convention.
+    ///
+    /// # Errors
+    ///
+    /// A value is missing, is not a number or is out of range.
+    pub(super) fn add(&self, row: &Row<'_>, found: &mut Found) -> Result<(), ReadError> {
+        let wavelength_um = self.wavelength(row)?;
+        let directions = self.directions(row, found)?;
+        let Some(directions) = directions else {
+            found.beyond += self.readings_in_a_row();
+            return Ok(());
+        };
+        let (theta, phi) = self
+            .convention
+            .in_model(directions.theta_deg, directions.phi_deg);
+        let mut add = |value: Option<f64>, wavelength_um, sigma: Option<f64>| match value {
+            None => found.not_taken += 1,
+            Some(value) => {
+                found.readings.push(Measurement {
+                    wavelength_um,
+                    psi: directions.psi,
+                    theta,
+                    phi,
+                    brdf: self.values.to_brdf(value, theta),
+                    sigma: sigma.map(|sigma| self.values.deviation(sigma, value, theta)),
+                });
+            }
+        };
+        match &self.roles.readings {
+            Readings::One(column) => {
+                let value = self.value(row, *column)?;
+                add(value, wavelength_um, self.sigma(row)?);
+            }
+            Readings::Polarised(s, p) => {
+                let (s, p) = (self.value(row, *s)?, self.value(row, *p)?);
+                let value = match self.polarisation {
+                    Some(0) => s,
+                    Some(_) => p,
+                    None => s.zip(p).map(|(s, p)| 0.5 * (s + p)),
+                };
+                add(value, wavelength_um, None);
+            }
+            Readings::Ratio(signal, reference) => {
+                let signal = self.value(row, *signal)?;
+                let expected = "expected the signal of the white standard, above 0";
+                let reference = row.value(*reference, expected, |x| x > 0.0)?;
+                add(signal.map(|signal| signal / reference), wavelength_um, None);
+            }
+            Readings::Channels(channels) => {
+                for (column, um) in channels {
+                    add(self.value(row, *column)?, Some(*um), None);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn readings_in_a_row(&self) -> usize {
+        match &self.roles.readings {
+            Readings::Channels(channels) => channels.len(),
+            _ => 1,
+        }
+    }
+
+    fn wavelength(&self, row: &Row<'_>) -> Result<Option<f64>, ReadError> {
+        let Some((column, unit)) = self.roles.wavelength else {
+            return Ok(self.wavelength_um);
+        };
+        let expected = match unit {
+            LengthUnit::Micrometres => "expected micrometres above 0",
+            LengthUnit::Nanometres => "expected nanometres above 0",
+            LengthUnit::Unstated => "expected a wavelength above 0",
+        };
+        let number = row.value(column, expected, is_wavelength)?;
+        let text = row.fields.get(column).copied().unwrap_or_default();
+        Ok(match unit {
+            LengthUnit::Nanometres => micrometres(text).or(Some(number / 1000.0)),
+            LengthUnit::Micrometres | LengthUnit::Unstated => Some(number),
+        })
+    }
+
+    /// The directions of a row; `None` where one of them is at or beyond the horizon.
+    fn directions(
+        &self,
+        row: &Row<'_>,
+        found: &mut Found,
+    ) -> Result<Option<Directions>, ReadError> {
+        const PSI: &str = "expected the incidence angle";
+        const THETA: &str = "expected the view angle";
+        let (psi_deg, psi) = match self.roles.psi {
+            Some(column) => {
+                let (raw, degrees) = row.angle(column, PSI)?;
+                found.largest_angle = found.largest_angle.max(raw.abs());
+                let psi = match column.1 {
+                    AngleForm::Radians => raw.abs(),
+                    _ => degrees.abs().to_radians(),
+                };
+                (degrees, psi)
+            }
+            None => self
+                .psi_deg
+                .map_or((0.0, 0.0), |psi| (psi, psi.abs().to_radians())),
+        };
+        let (raw, theta_deg) = row.angle(self.roles.theta, THETA)?;
+        found.largest_angle = found.largest_angle.max(raw.abs());
+        let azimuth = |column: Option<AngleColumn>| {
+            let degrees = column.map(|column| row.angle(column, "expected an azimuth"));
+            degrees
+                .transpose()
+                .map(|angle| angle.map(|(_, degrees)| degrees))
+        };
+        let view = azimuth(self.roles.view_azimuth)?
+            .or(self.phi_deg)
+            .unwrap_or(0.0);
+        let source = azimuth(self.roles.source_azimuth)?.unwrap_or(0.0);
+        if psi_deg.abs() >= 90.0 || theta_deg.abs() >= 90.0 {
+            return Ok(None);
+        }
+        let mut phi_deg = view - source;
+        if psi_deg < 0.0 {
+            found.mirrored += 1;
+            phi_deg += 180.0;
+        }
+        Ok(Some(Directions {
+            psi,
+            theta_deg,
+            phi_deg,
+        }))
+    }
+
+    /// The reading in a column; `None` where it was not taken.
+    fn value(&self, row: &Row<'_>, column: usize) -> Result<Option<f64>, ReadError> {
+        if was_not_taken(row.fields.get(column).copied().unwrap_or_default()) {
+            return Ok(None);
+        }
+        let value = row.value(column, "expected a reading", is_reading)?;
+        if self.missing == Some(value) {
+            return Ok(None);
+        }
+        if looks_missing(value) {
+            let message = format!(
+                "looks like a reading that was not taken: if it is one, say so by a line \"# missing: {value}\""
+            );
+            return Err(row.error(column, message));
+        }
+        let brdf = self.values.to_brdf(value, 0.0);
+        if is_reading(brdf) {
+            Ok(Some(value))
+        } else {
+            Err(row.error(column, "is too large for a reading"))
+        }
+    }
+
+    fn sigma(&self, row: &Row<'_>) -> Result<Option<f64>, ReadError> {
+        // The standard deviation may be blank in single rows.
+        let column = self
+            .roles
+            .sigma
+            .filter(|&column| !was_not_taken(row.fields.get(column).copied().unwrap_or_default()));
+        column
+            .map(|column| {
+                row.value(
+                    column,
+                    "expected a standard deviation above 0",
+                    is_deviation,
+                )
+            })
+            .transpose()
+    }
 }
 
 impl Row<'_> {
     /// # Errors
     ///
     /// The row has more fields than the header has columns, and one of them is not blank.
-    pub(super) fn check_length(&self, expected: usize) -> Result<(), ReadError> {
-        let surplus = self
-            .fields
-            .iter()
-            .skip(expected)
-            .any(|field| !field.trim_ascii().is_empty());
-        if surplus {
+    pub(super) fn check_length(&self) -> Result<(), ReadError> {
+        let expected = self.columns.len();
+        let mut surplus = self.fields.iter().skip(expected);
+        if surplus.any(|field| !field.trim_ascii().is_empty()) {
             let found = self.fields.len();
             let message = format!("{found} fields: expected {expected}, as in the header");
             return Err(self.text.line_error(self.line, message));
@@ -38,76 +245,47 @@ impl Row<'_> {
         Ok(())
     }
 
-    /// The reading of the row, converted to f_r and the model's convention.
-    ///
-    /// # Errors
-    ///
-    /// A value is missing, is not a number or is out of range.
-    pub(super) fn reading(
-        &self,
-        columns: &Columns,
-        quantity: Quantity,
-        convention: Convention,
-    ) -> Result<Measurement, ReadError> {
-        let optional = |column: Option<usize>, name, expected, accepts: fn(f64) -> bool| {
-            column
-                .map(|column| self.value(column, name, expected, accepts))
-                .transpose()
+    /// The angle in a column, as it is written and in degrees.
+    fn angle(&self, (column, form): AngleColumn, what: &str) -> Result<(f64, f64), ReadError> {
+        let (unit, accepts): (_, fn(f64) -> bool) = match form {
+            AngleForm::Degrees | AngleForm::Unstated => (" in degrees", is_angle),
+            AngleForm::Radians => (" in radians", is_angle),
+            AngleForm::Cosine => (" as a cosine from -1 to 1", |x| x.abs() <= 1.0),
         };
-        let wavelength_um = optional(
-            columns.wavelength,
-            WAVELENGTH,
-            "expected micrometres above 0",
-            is_wavelength,
-        )?;
-        let psi_deg = self.value(
-            columns.psi,
-            PSI,
-            "expected degrees from 0 to below 90",
-            |x| (0.0..90.0).contains(&x),
-        )?;
-        let theta_deg = self.value(
-            columns.theta,
-            THETA,
-            "expected degrees between -90 and 90",
-            |x| x.abs() < 90.0,
-        )?;
-        let phi_deg = optional(columns.phi, PHI, "expected degrees", |_| true)?.unwrap_or(0.0);
-        let reading = self.value(columns.brdf, BRDF, "expected a reading in 1/sr", is_reading)?;
-        // The standard deviation may be blank in single rows.
-        let sigma = columns.sigma.filter(|&column| !self.is_blank(column));
-        let sigma = optional(sigma, SIGMA, "expected 1/sr above 0", is_deviation)?;
-
-        let (theta, phi) = convention.in_model(theta_deg, phi_deg);
-        Ok(Measurement {
-            wavelength_um,
-            psi: psi_deg.to_radians(),
-            theta,
-            phi,
-            brdf: quantity.to_brdf(reading, theta),
-            sigma: sigma.map(|sigma| quantity.to_brdf(sigma, theta)),
-        })
-    }
-
-    fn is_blank(&self, column: usize) -> bool {
-        self.fields
-            .get(column)
-            .is_none_or(|field| field.trim_ascii().is_empty())
+        let raw = self.value(column, &format!("{what}{unit}"), accepts)?;
+        let degrees = match form {
+            AngleForm::Degrees | AngleForm::Unstated => raw,
+            AngleForm::Radians => raw.to_degrees(),
+            AngleForm::Cosine => raw.acos().to_degrees(),
+        };
+        Ok((raw, degrees))
     }
 
     /// The number in a column for which `accepts` is true.
     fn value(
         &self,
         column: usize,
-        name: &str,
         expected: &str,
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
         let field = Field {
             text: self.fields.get(column).copied().unwrap_or_default(),
-            decimal_comma: self.decimal_comma,
+            // A comma that does not separate fields is a decimal comma.
+            decimal_comma: true,
         };
-        self.text.number(self.line, name, &field, expected, accepts)
+        self.text.number(
+            self.line,
+            &self.columns[column].name,
+            &field,
+            expected,
+            accepts,
+        )
+    }
+
+    fn error(&self, column: usize, message: impl Into<String>) -> ReadError {
+        let field = self.fields.get(column).copied().unwrap_or_default();
+        self.text
+            .value_error(self.line, &self.columns[column].name, field, message)
     }
 }
 
@@ -131,9 +309,7 @@ impl IndexColumn {
         wavelength_um: Option<f64>,
     ) -> Result<(), ReadError> {
         let expected = "expected a refractive index from 1 to 1e5";
-        let n = row.value(column, INDEX, expected, |n| {
-            check_refractive_index(n).is_ok()
-        })?;
+        let n = row.value(column, expected, |n| check_refractive_index(n).is_ok())?;
         let before = *self
             .by_wavelength
             .entry(wavelength_um.map(f64::to_bits))
@@ -143,9 +319,10 @@ impl IndexColumn {
         }
         let message = format!("differs from {before}, given before at the same wavelength");
         let value = n.to_string();
+        let name = &row.columns[column].name;
         Err(row
             .text
-            .value_error(row.line, INDEX, value.as_bytes(), message))
+            .value_error(row.line, name, value.as_bytes(), message))
     }
 
     /// The index of all rows; `None` where no row gives one.

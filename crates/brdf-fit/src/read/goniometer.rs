@@ -243,9 +243,10 @@ impl Table {
             && others.len() >= 2
         {
             let same = |other: &f64| (other - first).abs() <= 1e-9 * first.abs();
-            return Some(match others.iter().all(same) {
-                true => Columns::Azimuths,
-                false => Columns::Incidences,
+            return Some(if others.iter().all(same) {
+                Columns::Azimuths
+            } else {
+                Columns::Incidences
             });
         }
         let one_column = self.columns_deg.len() == 1;

@@ -314,14 +314,13 @@ fn check_found(
     let roles = &reader.roles;
     let zeniths = roles.psi.into_iter().chain([roles.theta]);
     let mut unstated = zeniths.filter(|(_, form)| *form == AngleForm::Unstated);
-    if let Some((column, _)) = unstated.next() {
-        if found.largest_angle > 0.0 && found.largest_angle < MAY_BE_RADIANS {
-            let name = &header.columns[column].name;
-            return problem(format!(
-                "the unit of the angles is not known, and all are below {MAY_BE_RADIANS}: expected names \
-                 with a unit, such as \"{name}_rad\" or \"{name}_deg\""
-            ));
-        }
+    let may_be_radians = found.largest_angle > 0.0 && found.largest_angle < MAY_BE_RADIANS;
+    if let Some((column, _)) = unstated.next().filter(|_| may_be_radians) {
+        let name = &header.columns[column].name;
+        return problem(format!(
+            "the unit of the angles is not known, and all are below {MAY_BE_RADIANS}: expected names with \
+             a unit, such as \"{name}_rad\" or \"{name}_deg\""
+        ));
     }
     if let Some((column, LengthUnit::Unstated)) = roles.wavelength {
         let wavelengths = || {

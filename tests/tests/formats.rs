@@ -236,9 +236,10 @@ fn wrong_files_are_refused_with_line_and_value() {
     );
     assert_refused(
         "a.txt",
-        &with("goniometer.txt", ";70\n", ";90\n"),
+        &with("goniometer.txt", ";70\n", ";120\n"),
         &[],
-        ", line 5, column incidence: \"90\" is out of range: expected degrees from 0 to below 90",
+        ", line 5: the columns are azimuths, and the incidence angle is not given: expected a line \
+         such as \"# psi_deg: 30\" in the file",
     );
 }
 
@@ -248,9 +249,9 @@ fn a_file_of_no_known_format_says_which_are_known() {
         "a.dat",
         "angle value\n10 0.1\nx 0.2\n",
         &[],
-        ", line 1: missing column psi_deg and theta_deg and brdf_per_sr: expected a header with \
-         psi_deg, theta_deg and brdf_per_sr, found \"angle value\"; known formats are csv, merl, \
-         astm, zemax, black-lab, goniometer",
+        ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
+         brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
+         goniometer",
     );
 }
 

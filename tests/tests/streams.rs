@@ -74,7 +74,7 @@ fn a_scan_is_read_from_standard_input() {
     assert_eq!(output.status.code(), Some(BAD));
     let message = text(&output.stderr);
     assert!(
-        message.starts_with("error: standard input, line 1: missing column"),
+        message.starts_with("error: standard input, line 1: no column for the reading"),
         "{message}"
     );
 }

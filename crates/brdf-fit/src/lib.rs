@@ -66,9 +66,10 @@ pub use fit::{
 pub use format::ParseError;
 pub use inference::{
     ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Deviations,
-    ErrorSizes, Estimate, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise, NoiseTests,
-    Physics, PredictedIncidence, Quality, Reflectance, RelativePrediction, Reliance, TEST_LEVEL,
-    Uncertainty, VERDICT_MARGIN, Verdict, Warning, Without, assess, most_influential, rests_on,
+    ErrorSizes, Estimate, Hint, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise,
+    NoiseTests, Physics, PredictedIncidence, Quality, Reflectance, RelativePrediction, Reliance,
+    TEST_LEVEL, Uncertainty, VERDICT_MARGIN, Verdict, Warning, Without, assess, most_influential,
+    rests_on,
 };
 pub use model::{
     DEFAULT_N, FixedError, FixedParameters, K1_RANGE, Model, N_RANGE, Parameter, ReducedModel,

@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
-use crate::inference::Warning;
+use crate::inference::{Hint, Warning};
 use crate::objective::ObjectiveError;
 use crate::report::DocumentError;
 use crate::tradeoff::fitting::TradeoffError;
@@ -104,6 +104,21 @@ pub(super) fn warning(warning: &Warning) -> String {
             warning,
             "--theta-positive forward, or --phi-zero forward, reads it so",
         ),
+        Warning::Reading(hint) => match hint {
+            Hint::Nanometres { .. } => {
+                with_hint(warning, "--columns wavelength_um=wavelength_nm reads it so")
+            }
+            Hint::TooBright { .. } => with_hint(
+                warning,
+                "for example --declare quantity=reflectance_factor_percent",
+            ),
+            Hint::AllNegative => with_hint(warning, "--declare quantity=log10_brdf"),
+            Hint::DetectorShadow { within_deg, .. } => {
+                let degrees = within_deg.ceil() + 1.0;
+                with_hint(warning, &format!("--mask-source {degrees} leaves them out"))
+            }
+            _ => warning.to_string(),
+        },
         _ => warning.to_string(),
     }
 }

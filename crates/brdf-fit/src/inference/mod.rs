@@ -5,7 +5,7 @@
 //! terms, variance_components -> noise --------+
 //! spread, undetermined ------------------------+-> uncertainty --+
 //! refit -> cross_validation, sensitivity -----------------------+-> model_comparison -> verdict
-//! physics ------------------------------------------------------+-> assessment, warning
+//! physics ------------------------------------------------------+-> assessment, warning <- hint
 //! ```
 //!
 //! E of eq. (5) is minimised whatever the errors of the readings are. What is said about the result
@@ -16,6 +16,7 @@ mod assessment;
 mod cross_validation;
 mod deviations;
 mod estimate;
+mod hint;
 mod model_comparison;
 mod noise;
 mod physics;
@@ -34,6 +35,7 @@ pub use assessment::{Assessment, assess};
 pub use cross_validation::{CrossValidation, PredictedIncidence, RelativePrediction};
 pub use deviations::{Deviations, Quality};
 pub use estimate::{Estimate, Interval, Knowledge};
+pub use hint::Hint;
 pub use model_comparison::{ASSESSED_BINS, ASSESSED_READINGS, Candidate, LeftOut};
 pub use noise::{ErrorSizes, Noise, NoiseTests, TEST_LEVEL};
 pub use physics::{Physics, Reflectance};

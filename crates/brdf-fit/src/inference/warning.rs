@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::deviations::Quality;
 use super::estimate::{Estimate, Knowledge};
+use super::hint::{Hint, hints, reinterpretations};
 use super::noise::Noise;
 use super::physics::violation_deg;
 use super::uncertainty::Uncertainty;
@@ -32,6 +33,9 @@ const LARGE_CHI_SQUARE: f64 = 4.0;
 /// Up to this E, in percent, the model describes a scan too well for reversed signs of theta.
 const FITS_WELL_PERCENT: f64 = 1.0;
 
+/// Up to this E, in percent, the angles of a scan are as they should be.
+const EXACT_PERCENT: f64 = 0.1;
+
 /// Reversed signs of theta describe the readings better when they lower E by this factor.
 const REVERSED_GAIN: f64 = 0.5;
 
@@ -40,6 +44,8 @@ const REVERSED_GAIN: f64 = 0.5;
 #[serde(tag = "kind", rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum Warning {
+    /// The numbers suggest that the file means other quantities, units or angles.
+    Reading(Hint),
     /// The rms error is above 30 %: the model does not describe the sample.
     NotDescribed {
         /// E in percent.
@@ -110,6 +116,7 @@ impl Warning {
     /// The kind of the warning in a word, as in JSON and CSV.
     pub fn kind(&self) -> &'static str {
         match self {
+            Self::Reading(hint) => hint.kind(),
             Self::NotDescribed { .. } => "not-described",
             Self::ThetaReversed { .. } => "turned-round",
             Self::ReflectanceAboveOne { .. } => "reflectance-above-one",
@@ -129,6 +136,7 @@ impl Warning {
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Reading(hint) => hint.fmt(f),
             Self::NotDescribed { e_percent } => write!(
                 f,
                 "the model does not describe this sample: its rms error is {:.0} % of the rms reading",
@@ -210,7 +218,11 @@ pub(crate) fn warnings(
     progress: &Progress<'_>,
 ) -> Result<Vec<Warning>, Cancelled> {
     let fit = &fitted.fit;
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<Warning> = hints(measurements)
+        .into_iter()
+        .map(Warning::Reading)
+        .collect();
+    warnings.extend(other_angles(measurements, fitted, progress)?);
     if Quality::of(fit) == Quality::Poor {
         warnings.push(Warning::NotDescribed {
             e_percent: fit.e_percent,
@@ -279,6 +291,38 @@ fn theta_reversed(
     let as_read = lowest_e_percent(measurements, fit, progress)?;
     let better = reversed.filter(|_| as_read.is_some_and(is_better));
     Ok(better.map(|e_percent| Warning::ThetaReversed { e_percent }))
+}
+
+/// The other meaning of the view angles with which the model describes the readings best, if it
+/// describes them much better than as they were read.
+fn other_angles(
+    measurements: &Measurements,
+    fitted: &Solution,
+    progress: &Progress<'_>,
+) -> Result<Option<Warning>, Cancelled> {
+    let fit = &fitted.fit;
+    if fit.e_percent <= EXACT_PERCENT {
+        return Ok(None);
+    }
+    let mut best: Option<(f64, Hint)> = None;
+    for other in reinterpretations(measurements) {
+        let Some(scan) = other.of(measurements) else {
+            continue;
+        };
+        let lowest = lowest_e_percent(&scan, fit, progress)?.unwrap_or(f64::INFINITY);
+        if best
+            .as_ref()
+            .is_none_or(|(e_percent, _)| lowest < *e_percent)
+        {
+            best = Some((lowest, other.hint));
+        }
+    }
+    let Some((e_percent, hint)) = best else {
+        return Ok(None);
+    };
+    let as_read = lowest_e_percent(measurements, fit, progress)?;
+    let gain = REVERSED_GAIN * as_read.unwrap_or(0.0).min(fit.e_percent);
+    Ok((e_percent < gain).then_some(Warning::Reading(hint)))
 }
 
 /// The lowest E of the paper's model at the n of a fit, in percent, to the grid of the search. It

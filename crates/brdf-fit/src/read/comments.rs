@@ -9,6 +9,9 @@ use super::number::parse_number;
 use super::text::Text;
 use crate::scan::{Metadata, RefractiveIndex};
 
+/// The key of the source's azimuth in degrees.
+pub(super) const SOURCE_AZIMUTH: &str = "source_azimuth_deg";
+
 /// The text of a comment line, also of one that a spreadsheet has put into quotes; `None` where the
 /// line is not a comment.
 pub(super) fn comment_of(line: &[u8]) -> Option<&[u8]> {
@@ -18,7 +21,20 @@ pub(super) fn comment_of(line: &[u8]) -> Option<&[u8]> {
 
 /// The key in lower case and the value of a comment `key: value` or `key = value`, without the
 /// separators that a spreadsheet appends.
+///
+/// Files of a pab goniophotometer give the direction of the source as `intheta 30` and `inphi 180`.
 pub(super) fn key_and_value(comment: &str) -> Option<(String, String)> {
+    let mut words = comment.split_whitespace();
+    if let (Some(key @ ("intheta" | "inphi")), Some(value), None) =
+        (words.next(), words.next(), words.next())
+    {
+        let key = if key == "intheta" {
+            "psi_deg"
+        } else {
+            SOURCE_AZIMUTH
+        };
+        return Some((key.to_owned(), value.to_owned()));
+    }
     let (key, value) = comment.split_once([':', '='])?;
     let key = key.trim().to_lowercase();
     let value = value

@@ -5,6 +5,7 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 
 use super::error::ReadError;
+use super::foreign::foreign;
 use super::options::ReadOptions;
 use super::text::{Text, read_bytes};
 use super::{astm, black_lab, csv, detect, goniometer, merl, zemax};
@@ -45,6 +46,7 @@ impl Measurements {
         let mut head = Vec::new();
         let mut beginning = file.by_ref().take(detect::HEAD);
         beginning.read_to_end(&mut head).map_err(io)?;
+        check_head(path, &head, options)?;
         let bytes = read_bytes(head, file, size).map_err(io)?;
         from_bytes(path, &bytes, options)
     }
@@ -61,8 +63,14 @@ impl Measurements {
         options: &ReadOptions,
     ) -> Result<Self, ReadError> {
         let path = Path::new(name);
-        let bytes =
-            read_bytes(Vec::new(), reader, 0).map_err(|error| ReadError::io(path, error))?;
+        let io = |error| ReadError::io(path, error);
+        let (mut reader, mut head) = (reader, Vec::new());
+        let mut beginning = reader.by_ref().take(detect::HEAD);
+        beginning.read_to_end(&mut head).map_err(io)?;
+        if !may_be_merl(&head, options) {
+            check_head(path, &head, options)?;
+        }
+        let bytes = read_bytes(head, reader, 0).map_err(io)?;
         from_bytes(path, &bytes, options)
     }
 
@@ -77,9 +85,28 @@ impl Measurements {
     }
 }
 
+/// Refuses a file by its first block: one of another program, or binary data.
+fn check_head(path: &Path, head: &[u8], options: &ReadOptions) -> Result<(), ReadError> {
+    let foreign = foreign(head).filter(|_| options.format.is_none());
+    match foreign {
+        Some(message) => Err(ReadError::file(path, message)),
+        None if head.iter().all(u8::is_ascii_whitespace) => Ok(()),
+        None => Text::new(path, head).map(|_| ()),
+    }
+}
+
+/// Whether a stream may be a MERL table: its beginning is that of one, or the options say so.
+fn may_be_merl(head: &[u8], options: &ReadOptions) -> bool {
+    options.format == Some(Format::Merl) || merl::begins_table(head)
+}
+
 fn from_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
     let known = options.format.or_else(|| Format::detect(bytes, path));
     let format = known.unwrap_or_default();
+    if format != Format::Merl {
+        let head = usize::try_from(detect::HEAD).unwrap_or(usize::MAX);
+        check_head(path, &bytes[..bytes.len().min(head)], options)?;
+    }
     if format == Format::Merl {
         let name = path.display().to_string();
         return merl::read(merl::Table::new(Cursor::new(bytes), &name)?, options);

@@ -14,6 +14,7 @@ mod detect;
 mod error;
 mod fields;
 mod file;
+mod foreign;
 pub mod goniometer;
 mod lazy_scan;
 pub mod merl;

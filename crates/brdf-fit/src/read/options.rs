@@ -6,13 +6,14 @@ use super::error::ReadError;
 use crate::scan::{Convention, Format, Side};
 
 /// The keys of comments that the readings of a table depend on.
-pub const DECLARED_KEYS: [&str; 11] = [
+pub const DECLARED_KEYS: [&str; 12] = [
     "quantity",
     "unit",
     "factor",
     "missing",
     "psi_deg",
     "phi_deg",
+    "source_azimuth_deg",
     "wavelength_um",
     "wavelength_nm",
     "refractive_index",

@@ -16,6 +16,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use brdf_core::{Geometry, GeometryError};
 use serde::{Deserialize, Serialize};
 
+use crate::format::counted;
+
 /// One reading. Angles are in radians and in the convention of the model: positive theta at phi = 0
 /// is on the side of the source.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -242,6 +244,40 @@ impl Measurements {
         all.sort_by(by_value);
         all.dedup();
         all
+    }
+
+    /// One scan of one sample whose readings are in several files, such as one for each incidence.
+    ///
+    /// The metadata are those of the first file. `None` where there is no scan, or where two scans state
+    /// different refractive indices.
+    pub fn joined(scans: Vec<Self>) -> Option<Self> {
+        let mut scans = scans.into_iter();
+        let mut joined = scans.next()?;
+        let first = joined.source.clone();
+        let mut others = 0;
+        for scan in scans {
+            others += 1;
+            match (&joined.refractive_index, scan.refractive_index) {
+                (Some(one), Some(other)) if *one != other => return None,
+                (None, other) => joined.refractive_index = other,
+                _ => {}
+            }
+            let new = |known: &[String], all: Vec<String>| -> Vec<String> {
+                all.into_iter().filter(|one| !known.contains(one)).collect()
+            };
+            let (conversions, ignored) = (scan.conversions, scan.ignored_columns);
+            joined
+                .conversions
+                .extend(new(&joined.conversions, conversions));
+            joined
+                .ignored_columns
+                .extend(new(&joined.ignored_columns, ignored));
+            joined.readings.extend(scan.readings);
+        }
+        if others > 0 {
+            joined.source = format!("{first} and {}", counted(others, "other file"));
+        }
+        Some(joined)
     }
 
     /// One scan for each wavelength, in ascending order.

@@ -142,6 +142,10 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "KEY=VALUE", value_parser = declaration)]
     pub(super) declare: Vec<(String, String)>,
 
+    /// Fit all files as one scan of one sample, for example a file for each incidence
+    #[arg(long)]
+    pub(super) join: bool,
+
     /// Fit only this many readings of each wavelength, spread evenly over the angles theta_h,
     /// theta_d and phi_d between half vector and directions [default: all]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..))]

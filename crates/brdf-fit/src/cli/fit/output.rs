@@ -1,6 +1,7 @@
 //! Writes and prints the results of `brdf fit`.
 
 use std::io;
+use std::path::PathBuf;
 
 use super::arguments::Arguments;
 use crate::cli::explain;
@@ -20,19 +21,30 @@ pub(super) fn deliver(
 ) -> Vec<Failure> {
     let scans = scans.iter().copied();
     let mut failures = Vec::new();
-    if let Some(folder) = &arguments.plot {
+    // A run in which no fit succeeded replaces no earlier result.
+    let any_fit = reports.iter().any(|report| report.fit.is_some());
+    let replaces = |path: &&PathBuf| any_fit || stream::is_stream(path) || !path.exists();
+    let kept = |path: &&PathBuf| !replaces(path);
+    let outputs = [&arguments.plot, &arguments.curves, &arguments.json];
+    for path in outputs.into_iter().flatten().filter(kept) {
+        eprintln!(
+            "{}: no fit succeeded, the earlier result is kept",
+            path.display()
+        );
+    }
+    if let Some(folder) = arguments.plot.as_ref().filter(replaces) {
         let reports: Vec<(&LazyScan, &Report)> = scans.clone().zip(&reports).collect();
         let written = write_folder(&reports, folder);
         failures.extend(written.err().map(Failure::from));
     }
-    if let Some(path) = &arguments.curves {
+    if let Some(path) = arguments.curves.as_ref().filter(replaces) {
         let fits = scans.zip(&reports);
         let fits = fits.filter_map(|(scan, report)| Some((scan, report.fit.as_ref()?)));
         let written = stream::write(path, |writer| write_curves(fits, writer));
         failures.extend(written.err().map(Failure::from));
     }
     let document = Document::new(reports);
-    if let Some(path) = &arguments.json {
+    if let Some(path) = arguments.json.as_ref().filter(replaces) {
         let written = stream::write_json(path, &document);
         failures.extend(written.err().map(Failure::from));
     }

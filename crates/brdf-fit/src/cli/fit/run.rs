@@ -1,5 +1,7 @@
 //! Reads the scans of `brdf fit` and fits them.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
 use super::arguments::Arguments;
@@ -14,6 +16,7 @@ use crate::fit::{FitError, FitOptions};
 use crate::progress::{NoObserver, Observer};
 use crate::read::{LazyScan, ReadError};
 use crate::report::{Document, Report};
+use crate::scan::Measurements;
 
 /// Fits all scans, and prints and writes the results. A problem with one scan or one output does
 /// not prevent the others.
@@ -72,13 +75,56 @@ fn read_all(
         .map(|file| stream::scans(file, &arguments.read_options(file, document)))
         .collect();
     let mut scans = Vec::new();
+    let mut all_read = true;
     for file in files {
         match file {
             Ok(of_file) => scans.extend(of_file),
-            Err(error) => problems.add(&Failure::from(error), Outcome::Failed),
+            Err(error) => {
+                all_read = false;
+                problems.add(&Failure::from(error), Outcome::Failed);
+            }
         }
     }
-    scans
+    match arguments.join {
+        false => scans,
+        // A sample of which a part is missing is not fitted.
+        true if !all_read => Vec::new(),
+        true => joined(&scans, problems),
+    }
+}
+
+/// One scan of all files, for each wavelength.
+fn joined(scans: &[LazyScan], problems: &mut Problems) -> Vec<LazyScan> {
+    let all: Result<Vec<Measurements>, ReadError> = scans
+        .iter()
+        .map(|scan| scan.measurements().map(Cow::into_owned))
+        .collect();
+    let all = match all {
+        Ok(all) => all,
+        Err(error) => {
+            problems.add(&Failure::from(error), Outcome::Failed);
+            return Vec::new();
+        }
+    };
+    if let Some(joined) = Measurements::joined(all) {
+        return joined
+            .by_wavelength()
+            .into_iter()
+            .map(LazyScan::Loaded)
+            .collect();
+    }
+    let place = Place {
+        file: scans
+            .iter()
+            .map(LazyScan::source)
+            .collect::<Vec<_>>()
+            .join(", "),
+        wavelength_um: None,
+        model: None,
+    };
+    let message = "the files state different refractive indices: expected one sample for --join";
+    problems.add_usage(place, message.to_owned());
+    Vec::new()
 }
 
 /// A scan of one wavelength, and how it is fitted.

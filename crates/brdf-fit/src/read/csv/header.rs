@@ -23,13 +23,22 @@ const OWN_NAMES: [&str; 7] = [
 
 /// Whether a line names the columns of a table. Some programs write the header behind a `#`.
 pub(in crate::read) fn is_header(line: &[u8]) -> bool {
-    let line = comment_of(line).unwrap_or(line);
+    let comment = comment_of(line);
+    let (line, needs_psi) = match comment.and_then(after_format) {
+        Some(names) => (names, false),
+        None => (comment.unwrap_or(line), true),
+    };
     // Lines of numbers are not looked at closely.
     let is_letter = |byte: &&u8| !byte.is_ascii() || byte.is_ascii_alphabetic();
     if line.iter().filter(is_letter).take(6).count() < 6 {
         return false;
     }
-    header_of(line, &[]).is_some_and(|(_, columns)| is_complete(&columns, true))
+    header_of(line, &[]).is_some_and(|(_, columns)| is_complete(&columns, needs_psi))
+}
+
+/// The names of the columns in a comment `format: theta phi DSF`.
+fn after_format(comment: &[u8]) -> Option<&[u8]> {
+    comment.trim_ascii_start().strip_prefix(b"format:")
 }
 
 /// The columns of a line and their separator, with the separator that gives the most columns with a
@@ -125,12 +134,14 @@ impl Preamble {
             text.check_length(number, line)?;
             let comment = comment_of(line);
             if search.header.is_none() {
-                search.take(
+                let names = comment.and_then(after_format);
+                let candidate = Candidate {
                     number,
-                    comment.unwrap_or(line),
-                    comment.is_some(),
-                    &options.columns,
-                );
+                    line: names.or(comment).unwrap_or(line),
+                    is_comment: comment.is_some(),
+                    needs_psi: comment.is_some() && names.is_none(),
+                };
+                search.take(&candidate, &options.columns);
                 if search.header.is_some() {
                     continue;
                 }
@@ -158,6 +169,16 @@ impl Preamble {
     }
 }
 
+/// A line that may be the header.
+struct Candidate<'a> {
+    number: u64,
+    /// The text without a leading `#` and `format:`.
+    line: &'a [u8],
+    is_comment: bool,
+    /// Whether it must name the incidence angle: a sentence in a comment may contain other names.
+    needs_psi: bool,
+}
+
 /// The search for the header.
 #[derive(Default)]
 struct Search {
@@ -169,7 +190,13 @@ struct Search {
 }
 
 impl Search {
-    fn take(&mut self, number: u64, line: &[u8], is_comment: bool, renamed: &[(String, String)]) {
+    fn take(&mut self, candidate: &Candidate<'_>, renamed: &[(String, String)]) {
+        let &Candidate {
+            number,
+            line,
+            is_comment,
+            needs_psi,
+        } = candidate;
         if line.trim_ascii().is_empty()
             || line.starts_with(b"sep=")
             || self.skipped > SEARCHED_LINES
@@ -183,7 +210,7 @@ impl Search {
         });
         match found {
             // A sentence may contain the names of columns, but a header has nothing else.
-            Some(header) if is_complete(&header.columns, is_comment) => {
+            Some(header) if is_complete(&header.columns, needs_psi) => {
                 self.header = Some(header);
                 return;
             }
@@ -204,7 +231,12 @@ fn no_header(text: &Text<'_>, best: Option<&Header>) -> ReadError {
     const EXPECTED: &str = "expected a line that names the columns, such as psi_deg, theta_deg and \
                             brdf_per_sr";
     let Some(header) = best else {
-        return text.error(format!("has no header: {EXPECTED}"));
+        let mut lines = text.lines().map(|(_, line)| line);
+        let first = lines.find(|line| comment_of(line).is_none() && !line.trim_ascii().is_empty());
+        let found = first.map_or_else(String::new, |line| {
+            format!(", found \"{}\"", quotable(line))
+        });
+        return text.error(format!("has no header: {EXPECTED}{found}"));
     };
     let missing = header.missing().join(" and ");
     let message = format!("no column for {missing}: {}", header.understood());

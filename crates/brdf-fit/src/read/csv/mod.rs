@@ -32,7 +32,9 @@
 //!   `reflectance_factor` (pi f_r, divided by pi), `reflectance_factor_percent`, `log10_brdf` or `brdf_db`.
 //! - `unit` is `1/sr`, `percent`, `log10` or `dB`; `factor` multiplies the values.
 //! - `missing` is the number that stands for a reading that was not taken.
-//! - `psi_deg`, `phi_deg`, `wavelength_um` and `wavelength_nm` serve as the column of that name.
+//! - `psi_deg`, `phi_deg`, `source_azimuth_deg`, `wavelength_um` and `wavelength_nm` serve as the column of
+//!   that name. A file of a pab goniophotometer has `#intheta 30`, `#inphi 180` and the names of the columns
+//!   behind `#format:` (pab advanced technologies; read by the Radiance tools of the same firm).
 //! - `polarisation` is `s` or `p`: of `brdf_s` and `brdf_p` that one is taken.
 //! - `refractive_index` is one number, such as `1.5`, or one for each wavelength in um, such as
 //!   `0.63=1.60,0.85=1.58`. The column `n` takes precedence.
@@ -53,7 +55,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
 use std::path::Path;
 
-use super::comments::{Comments, comment_of, number_of_key};
+use super::comments::{Comments, SOURCE_AZIMUTH, comment_of, number_of_key};
 use super::conversion::{BEYOND_HORIZON, Kind, NOT_TAKEN, Quantity, left_out};
 use super::error::ReadError;
 use super::names::{AngleForm, LengthUnit, Role};
@@ -247,6 +249,7 @@ fn reader(
         polarisation,
         psi_deg,
         phi_deg: number("phi_deg", "expected degrees", is_angle)?,
+        source_azimuth_deg: number(SOURCE_AZIMUTH, "expected degrees", is_angle)?,
         wavelength_um: micrometres.or(nanometres.map(|nm| nm / 1000.0)),
         roles,
     })

@@ -33,9 +33,10 @@ pub(super) struct Reader {
     pub(super) missing: Option<f64>,
     /// The polarisation of which the readings are taken, 0 for s and 1 for p; `None` takes the mean.
     pub(super) polarisation: Option<usize>,
-    /// What a comment states in place of a column: psi and phi in degrees, the wavelength in um.
+    /// What a comment states in place of a column: angles in degrees, the wavelength in um.
     pub(super) psi_deg: Option<f64>,
     pub(super) phi_deg: Option<f64>,
+    pub(super) source_azimuth_deg: Option<f64>,
     pub(super) wavelength_um: Option<f64>,
 }
 
@@ -173,7 +174,9 @@ impl Reader {
         let view = azimuth(self.roles.view_azimuth)?
             .or(self.phi_deg)
             .unwrap_or(0.0);
-        let source = azimuth(self.roles.source_azimuth)?.unwrap_or(0.0);
+        let source = azimuth(self.roles.source_azimuth)?
+            .or(self.source_azimuth_deg)
+            .unwrap_or(0.0);
         if psi_deg.abs() >= 90.0 || theta_deg.abs() >= 90.0 {
             return Ok(None);
         }

@@ -70,6 +70,18 @@ pub(in crate::read) fn is_table(start: &[u8], size: u64) -> bool {
     has_size(header, i32::from_le_bytes, size) || has_size(header, i32::from_be_bytes, size)
 }
 
+/// Whether the beginning of a stream, of which the size is not known, may be that of a table.
+pub(in crate::read) fn begins_table(start: &[u8]) -> bool {
+    const LARGEST: u64 = 1 << 40;
+    let is_header = |order| {
+        let header = start.first_chunk().map(|header| numbers(header, order));
+        header
+            .and_then(checked)
+            .is_some_and(|(_, size)| size < LARGEST)
+    };
+    is_header(i32::from_le_bytes) || is_header(i32::from_be_bytes)
+}
+
 fn has_size(header: &[u8; HEADER], order: fn([u8; 4]) -> i32, size: u64) -> bool {
     checked(numbers(header, order)).is_some_and(|(_, expected)| expected == size)
 }

@@ -37,7 +37,7 @@ use super::options::ReadOptions;
 use crate::scan::Measurements;
 pub use bins::Bins;
 pub use channels::Channel;
-pub(super) use header::is_table;
+pub(super) use header::{begins_table, is_table};
 pub use table::Table;
 
 /// The channels of a table one after the other, in ascending order of wavelength, each with as many

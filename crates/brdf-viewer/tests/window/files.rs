@@ -58,11 +58,11 @@ fn an_invalid_file_is_reported_with_line_and_value_and_the_data_stay() {
     drop_file(
         &mut window,
         "bad.csv",
-        "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n95,0,0.2\n",
+        "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n9x,0,0.2\n",
     );
     assert_eq!(names(&window), before);
     let error = &window.state().state.errors()[0];
-    for part in ["bad.csv", "line 3", "psi_deg", "95"] {
+    for part in ["bad.csv", "line 3", "psi_deg", "9x"] {
         assert!(error.contains(part), "{error}");
     }
     assert!(window.query_by_label(error.as_str()).is_some());

@@ -38,7 +38,7 @@ fn bring_to(window: &mut Window, state: &str) {
         }
         "panels" => apply(Intent::Command(Command::Panels)),
         "error" => {
-            let text = "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n10,95,0.2\n";
+            let text = "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n10,9x,0.2\n";
             drop_file(window, "lacquer.csv", text);
         }
         _ => {}

@@ -31,6 +31,10 @@ use crate::scan::{Format, RefractiveIndex, Side};
 /// for incorrect usage, input that cannot be read, or output that cannot be written.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is an option of the command line"
+)]
 pub(in crate::cli) struct Arguments {
     /// Scans, in any of the formats of --format; - is standard input
     #[arg(required = true, value_name = "FILE")]

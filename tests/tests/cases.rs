@@ -277,3 +277,20 @@ fn a_sample_in_several_files_is_one_scan() {
         assert!(!fits[0].1.contains("few-incidences"), "{fits:?}");
     }
 }
+
+#[test]
+fn text_of_a_file_does_not_control_the_terminal() {
+    let Some(folder) = cases() else {
+        eprintln!("skipped: no cases beside the workspace");
+        return;
+    };
+    for name in ["esc.csv", "c1.csv"] {
+        let path = folder.join("attack").join(name);
+        let output = run_fit([path.to_str().unwrap(), "--n", "1.5", "--verbose"]);
+        assert!(output.status.success());
+        let printed = text(&output.stdout) + &text(&output.stderr);
+        let controls = |c: char| c.is_control() && c != '\n' && c != '\t';
+        assert_eq!(printed.find(controls), None, "{name}");
+        assert_eq!(printed.find('\u{202e}'), None, "{name}");
+    }
+}

@@ -619,3 +619,28 @@ fn the_help_names_every_option_with_its_unit_and_default() {
         assert!(text.contains(expected), "no \"{expected}\" in:\n{text}");
     }
 }
+
+#[test]
+fn a_run_without_a_fit_keeps_the_earlier_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let json = folder.path().join("fit.json");
+    let curves = folder.path().join("curves.csv");
+    let run = |extra: &[&str]| {
+        let scan = measured("z307_on_aluminium.csv");
+        let mut arguments = vec![scan.as_str(), "--json", json.to_str().unwrap()];
+        arguments.extend(["--curves", curves.to_str().unwrap()]);
+        arguments.extend(extra);
+        run_fit(arguments)
+    };
+    succeeded(&run(&["--n", "1.5"]));
+    let earlier = [&json, &curves].map(|path| fs::read(path).unwrap());
+    // No refractive index is given.
+    let failed = run(&[]);
+    assert_eq!(failed.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&failed.stderr).into_owned();
+    assert!(message.contains("the earlier result is kept"), "{message}");
+    assert_eq!(
+        [&json, &curves].map(|path| fs::read(path).unwrap()),
+        earlier
+    );
+}

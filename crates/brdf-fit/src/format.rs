@@ -25,6 +25,25 @@ impl ParseError {
     }
 }
 
+/// A text without the characters that control a terminal or the direction of writing: each is replaced by
+/// its code, such as `\u{1b}`. Line ends and tabs are kept.
+pub fn printable(text: &str) -> String {
+    let controls = |c: char| {
+        let direction = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        let separator = matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}');
+        c.is_control() && c != '\n' && c != '\t' || direction || separator
+    };
+    let mut printable = String::with_capacity(text.len());
+    for c in text.chars() {
+        if controls(c) {
+            printable.extend(c.escape_unicode());
+        } else {
+            printable.push(c);
+        }
+    }
+    printable
+}
+
 /// `1 reading`, `3 readings`.
 pub fn counted(count: usize, noun: &str) -> String {
     let plural = if count == 1 { "" } else { "s" };
@@ -129,6 +148,13 @@ pub(crate) mod as_optional_degrees {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn characters_that_control_a_terminal_are_replaced_by_their_codes() {
+        assert_eq!(printable("paint\t1\nk\u{3b8}"), "paint\t1\nk\u{3b8}");
+        assert_eq!(printable("\x1b[31mred\r"), "\\u{1b}[31mred\\u{d}");
+        assert_eq!(printable("a\u{202e}b\u{9b}"), "a\\u{202e}b\\u{9b}");
+    }
 
     #[test]
     fn counts_have_their_plural() {

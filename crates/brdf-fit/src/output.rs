@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::format::printable;
+
 /// Whether a path is `-`, which stands for standard input or output.
 pub fn is_standard_stream(path: &Path) -> bool {
     path.as_os_str() == "-"
@@ -137,6 +139,15 @@ pub fn print(bytes: &[u8]) -> io::Result<()> {
     send(&mut io::stdout().lock(), bytes)
 }
 
+/// Prints a text to standard output, without characters that control a terminal.
+///
+/// # Errors
+///
+/// Standard output cannot be written.
+pub fn print_text(text: &str) -> io::Result<()> {
+    print(printable(text).as_bytes())
+}
+
 /// Prints an error message to standard error. A failure to do so is ignored.
 pub fn print_error(message: &str) {
     let name = if io::stderr().is_terminal() {
@@ -144,7 +155,7 @@ pub fn print_error(message: &str) {
     } else {
         "error:"
     };
-    let _ = writeln!(io::stderr(), "{name} {message}");
+    let _ = writeln!(io::stderr(), "{name} {}", printable(message));
 }
 
 fn folder_of(path: &Path) -> &Path {

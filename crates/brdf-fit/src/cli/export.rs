@@ -98,7 +98,7 @@ impl Arguments {
             (None, Some(found)) => format!("written: {path}; {found}\n"),
             (None, None) => return Ok(()),
         };
-        output::print(note.as_bytes()).map_err(Failure::Print)
+        output::print_text(&note).map_err(Failure::Print)
     }
 
     /// The output, unless it is standard output.

@@ -32,5 +32,5 @@ fn draw(arguments: &Arguments) -> Result<(), Failure> {
     stream::check_folder(("FOLDER", &arguments.folder))?;
     let files = write_figures(&paper_figures()?, &arguments.folder, "")?;
     let lines = files.iter().map(|file| format!("{}\n", file.display()));
-    output::print(lines.collect::<String>().as_bytes()).map_err(Failure::Print)
+    output::print_text(&lines.collect::<String>()).map_err(Failure::Print)
 }

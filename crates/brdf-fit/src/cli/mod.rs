@@ -14,6 +14,7 @@ mod outcome;
 mod problems;
 mod progress;
 mod stream;
+mod threads;
 mod trade;
 
 use std::process::ExitCode;
@@ -57,7 +58,9 @@ Examples:
 
 /// The program `brdf`: runs the subcommand that the command line names.
 pub fn brdf() -> ExitCode {
-    let outcome = match Brdf::parse_from(energy::command_line()).command {
+    let arguments = Brdf::parse_from(energy::command_line());
+    threads::prepare();
+    let outcome = match arguments.command {
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Trade(arguments) => trade::run(&arguments),
@@ -69,7 +72,9 @@ pub fn brdf() -> ExitCode {
 
 /// The program `fit`: the same as `brdf fit`.
 pub fn fit() -> ExitCode {
-    fit::run(&fit::Arguments::parse_from(energy::command_line())).into()
+    let arguments = fit::Arguments::parse_from(energy::command_line());
+    threads::prepare();
+    fit::run(&arguments).into()
 }
 
 #[cfg(test)]

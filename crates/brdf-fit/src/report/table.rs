@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::format::printable;
+
 /// A table of text cells.
 ///
 /// ```
@@ -199,9 +201,10 @@ fn markdown_row<'a>(cells: impl Iterator<Item = &'a str>) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
-/// A text with the characters replaced that are markup in HTML.
+/// A text with the characters replaced that are markup in HTML or control the direction of writing.
 pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
+    printable(text)
+        .replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
         .replace('"', "&quot;")

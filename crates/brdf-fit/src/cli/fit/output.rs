@@ -27,10 +27,10 @@ pub(super) fn deliver(
     let kept = |path: &&PathBuf| !replaces(path);
     let outputs = [&arguments.plot, &arguments.curves, &arguments.json];
     for path in outputs.into_iter().flatten().filter(kept) {
-        eprintln!(
-            "{}: no fit succeeded, the earlier result is kept",
-            path.display()
-        );
+        let name = path.display();
+        output::print_error(&format!(
+            "{name}: no fit succeeded, the earlier result is kept"
+        ));
     }
     if let Some(folder) = arguments.plot.as_ref().filter(replaces) {
         let reports: Vec<(&LazyScan, &Report)> = scans.clone().zip(&reports).collect();
@@ -72,5 +72,5 @@ fn print(arguments: &Arguments, reports: &[Report]) -> io::Result<()> {
     } else {
         write_parameters(reports, &mut buffer)?;
     }
-    output::print(&buffer)
+    output::print_text(&String::from_utf8_lossy(&buffer))
 }

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::expression::Term;
 use super::formula::{Function, Statement};
 use super::name::name_in_shaders;
+use crate::format::printable;
 
 /// A language. The defaults are those of most shading languages.
 pub(super) trait Dialect {
@@ -104,7 +105,12 @@ pub(super) fn print<D: Dialect>(dialect: &D, functions: &[Function]) -> String {
 
 /// Lines as comments.
 pub(super) fn comment<D: Dialect>(lines: &str) -> String {
-    let line = |line: &str| format!("{} {line}", D::COMMENT).trim_end().to_owned() + "\n";
+    let line = |line: &str| {
+        format!("{} {}", D::COMMENT, printable(line))
+            .trim_end()
+            .to_owned()
+            + "\n"
+    };
     lines.lines().map(line).collect()
 }
 

@@ -431,6 +431,32 @@ impl Cell {
         free.iter().map(of).collect()
     }
 
+    /// How often each test of the noise rejects at its level, in percent: that the errors grow with the
+    /// reading, that whole incidences differ, and that neighbours err together.
+    ///
+    /// # Panics
+    ///
+    /// A scan cannot be fitted.
+    pub fn rejections(&self, count: u64) -> [f64; 3] {
+        let scans = self.scans(count);
+        let options = self.study.options(&self.truth().0);
+        let rejected = |scan: &Measurements| {
+            let (report, _) = Report::new(scan, &options, Depth::Tested);
+            let tests = report.uncertainty.and_then(|uncertainty| uncertainty.tests);
+            let tests = tests.expect("a fit of simulated readings has its tests");
+            [
+                tests.grows(),
+                tests.incidences_differ(),
+                tests.neighbours_err_together(),
+            ]
+        };
+        let all: Vec<[bool; 3]> = scans.par_iter().map(rejected).collect();
+        std::array::from_fn(|test| {
+            let count = all.iter().filter(|rejected| rejected[test]).count();
+            100.0 * count as f64 / all.len() as f64
+        })
+    }
+
     /// Simulated scans, the same in every run.
     pub fn scans(&self, count: u64) -> Vec<Measurements> {
         let (_, surface) = self.truth();
@@ -650,4 +676,41 @@ fn column(summary: &Summary) -> String {
     }
     let _ = write!(text, ", w {:.1}", summary.width);
     text
+}
+
+/// The samples and angles for which the tests of the noise are measured.
+pub const TESTED: [(&str, Design); 3] = [
+    ("Z307", Design::Z307),
+    ("003", Design::Four),
+    ("002", Design::Eight),
+];
+
+/// The table of rejections of the tests of the noise, one row for each kind of noise.
+pub fn table_of_tests(scans: u64) -> String {
+    let mut table = "| data | errors grow | incidences differ | neighbours err together |\n\
+                     |---|---|---|---|\n"
+        .to_owned();
+    for noise in Noise::ALL {
+        let rejections = TESTED.map(|(sample, design)| {
+            let cell = Cell {
+                study: Study::Three,
+                sample,
+                design,
+                noise,
+            };
+            cell.rejections(scans)
+        });
+        let column = |test: usize| {
+            rejections
+                .map(|found| format!("{:.0}", found[test]))
+                .join("/")
+        };
+        let [grow, differ, together] = [0, 1, 2].map(column);
+        let _ = writeln!(
+            table,
+            "| {} | {grow} | {differ} | {together} |",
+            noise.name()
+        );
+    }
+    table
 }

@@ -238,21 +238,7 @@ fn rejections(noise: Noise) -> [f64; 3] {
         design: Design::Four,
         noise,
     };
-    let scans = cell.scans(200);
-    let mut counts = [0_u32; 3];
-    for scan in &scans {
-        let (report, _) = Report::new(scan, &options(1.43), Depth::Assessed);
-        let tests = report.uncertainty.unwrap().tests.unwrap();
-        let rejected = [
-            tests.grows(),
-            tests.incidences_differ(),
-            tests.neighbours_err_together(),
-        ];
-        for (count, rejected) in counts.iter_mut().zip(rejected) {
-            *count += u32::from(rejected);
-        }
-    }
-    counts.map(|count| 100.0 * f64::from(count) / scans.len() as f64)
+    cell.rejections(200)
 }
 
 /// Size and power of the tests: each rejects true noise in about 1 % of scans, and what it is made for

@@ -3,11 +3,12 @@
 //!
 //! The arguments are the number of scans of each cell, 300 without one, and what is studied, as in
 //! `measure-coverage 300 three+n`: everything without one. With `cells` behind them, each cell is
-//! printed instead of the tables.
+//! printed instead of the tables. `measure-coverage 400 noise` prints how often the tests of the noise
+//! reject.
 
 use std::process::ExitCode;
 
-use brdf_tests::coverage::{Cell, Design, Noise, Study, cells, table};
+use brdf_tests::coverage::{Cell, Design, Noise, Study, cells, table, table_of_tests};
 
 fn main() -> ExitCode {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -20,6 +21,10 @@ fn main() -> ExitCode {
         eprintln!("error: expected the number of scans of each cell");
         return ExitCode::from(2);
     };
+    if arguments.get(1).is_some_and(|name| name == "noise") {
+        print!("{}", table_of_tests(scans));
+        return ExitCode::SUCCESS;
+    }
     let in_plane = Design::IN_PLANE.as_slice();
     let studies = Study::ALL.into_iter().map(|study| (study, in_plane));
     let azimuthal = (Study::Three, [Design::Azimuthal].as_slice());

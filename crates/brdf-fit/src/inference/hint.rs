@@ -278,11 +278,11 @@ fn offset_of_peaks(scan: &Measurements) -> Option<f64> {
         .then_some(mean)
 }
 
-/// Whether the peaks of several incidences stand at theta = 0.
+/// Whether the peaks of several moderate incidences stand at theta = 0.
 fn peaks_in_zero(scan: &Measurements) -> bool {
     let peaks = peaks(scan);
-    let inclined = peaks.iter().filter(|(psi, _)| *psi >= 20.0);
-    inclined.clone().count() >= 2 && inclined.into_iter().all(|(_, theta)| theta.abs() <= 2.0)
+    let inclined = peaks.iter().filter(|(psi, _)| (15.0..=45.0).contains(psi));
+    inclined.clone().count() >= 2 && inclined.into_iter().all(|(_, theta)| theta.abs() <= 3.0)
 }
 
 /// The view angle of the specular peak in the plane of incidence, in degrees, from a parabola through the

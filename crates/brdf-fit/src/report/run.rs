@@ -67,10 +67,10 @@ pub struct Report {
     /// errors, where the errors grow with the reading and the model describes the sample; else empty.
     #[serde(default)]
     pub gain_of_relative_weights: Vec<(Parameter, f64)>,
-    /// The relative errors of the fit; `None` at [`Depth::Fit`].
+    /// The relative errors of the fit; `None` below [`Depth::Assessed`].
     #[serde(default)]
     pub deviations: Option<Deviations>,
-    /// Cross-validation, physical plausibility and model comparison; `None` at [`Depth::Fit`].
+    /// Cross-validation, physical plausibility and model comparison; `None` below [`Depth::Assessed`].
     #[serde(default)]
     pub assessment: Option<Assessment>,
     /// The readings that a robust fit rejects.
@@ -83,6 +83,8 @@ pub struct Report {
 pub enum Depth {
     /// Nothing.
     Fit,
+    /// The tests of the noise.
+    Tested,
     /// The assessment, with all models of the hierarchy.
     Assessed,
     /// The assessment, with the reference models as well.
@@ -198,7 +200,7 @@ impl Report {
         let fitted_readings = options.fitted_readings(measurements);
         self.warnings = warnings(&fitted_readings, &fitted, &uncertainty, &progress)?;
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
-        if depth > Depth::Fit {
+        if depth >= Depth::Assessed {
             self.deviations = Deviations::of(&fitted_readings, fit);
             if let Some(uncertainty) = &self.uncertainty {
                 self.gain_of_relative_weights =

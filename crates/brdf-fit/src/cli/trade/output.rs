@@ -51,7 +51,7 @@ impl Outputs {
             failures.extend(write_figures(path, figures));
         }
         if !self.files().any(|(_, path)| stream::is_stream(path)) {
-            let printed = output::print_text(&text);
+            let printed = output::print_text(text);
             failures.extend(printed.err().map(Failure::Print));
         }
         if failures.is_empty() {

@@ -1,9 +1,10 @@
 //! The lines before the rows: comments, lines of free text, and the header that names the columns.
 
+use super::roles::Roles;
 use crate::read::comments::{Comments, comment_of};
 use crate::read::error::ReadError;
 use crate::read::fields::Separator;
-use crate::read::names::{AngleForm, LengthUnit, Role};
+use crate::read::names::Role;
 use crate::read::options::ReadOptions;
 use crate::read::text::{Text, quotable};
 
@@ -378,146 +379,6 @@ impl Header {
     ///
     /// Two columns have one role, or a role is missing.
     pub(super) fn roles(&self, text: &Text<'_>) -> Result<Roles, ReadError> {
-        Roles::find(&self.columns).map_err(|message| text.line_error(self.number, message))
-    }
-}
-
-/// The columns of the angles, each with its unit.
-pub(super) type AngleColumn = (usize, AngleForm);
-
-/// The position of each quantity in a row.
-pub(super) struct Roles {
-    pub(super) psi: Option<AngleColumn>,
-    pub(super) theta: AngleColumn,
-    pub(super) source_azimuth: Option<AngleColumn>,
-    pub(super) view_azimuth: Option<AngleColumn>,
-    pub(super) wavelength: Option<(usize, LengthUnit)>,
-    pub(super) sigma: Option<usize>,
-    pub(super) n: Option<usize>,
-    pub(super) readings: Readings,
-    /// The columns that are not used and are not labels: they may separate readings of one geometry.
-    pub(super) unknown: Vec<usize>,
-}
-
-/// The columns of the readings.
-pub(super) enum Readings {
-    /// One reading a row.
-    One(usize),
-    /// A reading with each polarisation, s first.
-    Polarised(usize, usize),
-    /// The signal of the sample and that of the white standard.
-    Ratio(usize, usize),
-    /// A reading at each wavelength in um.
-    Channels(Vec<(usize, f64)>),
-}
-
-impl Roles {
-    fn find(columns: &[Column]) -> Result<Self, String> {
-        let all = |wanted: &dyn Fn(&Role) -> bool| -> Vec<usize> {
-            let columns = columns.iter().enumerate();
-            let found = columns.filter(|(_, column)| column.role.as_ref().is_some_and(wanted));
-            found.map(|(i, _)| i).collect()
-        };
-        let one = |wanted: &dyn Fn(&Role) -> bool| match all(wanted)[..] {
-            [] => Ok(None),
-            [only] => Ok(Some(only)),
-            [first, second, ..] => {
-                let (first, second) = (&columns[first], &columns[second]);
-                let words = first.role.map(Role::in_words).unwrap_or_default();
-                Err(format!(
-                    "the {words} is given twice, by \"{}\" and by \"{}\"",
-                    first.name, second.name
-                ))
-            }
-        };
-        let angle = |found: Option<usize>| {
-            found.and_then(|i| match columns[i].role? {
-                Role::Psi(form)
-                | Role::Theta(form)
-                | Role::ThetaS(form)
-                | Role::SourceAzimuth(form)
-                | Role::ViewAzimuth(form)
-                | Role::PhiS(form) => Some((i, form)),
-                _ => None,
-            })
-        };
-        // "s" is the scatter where the incidence has its own column, and the source where the view has.
-        let s_is_source = all(&|role| matches!(role, Role::Psi(_))).is_empty();
-        let psi = one(&|role| {
-            matches!(role, Role::Psi(_)) || s_is_source && matches!(role, Role::ThetaS(_))
-        })?;
-        let theta = one(&|role| {
-            matches!(role, Role::Theta(_)) || !s_is_source && matches!(role, Role::ThetaS(_))
-        })?;
-        let source_azimuth = one(&|role| {
-            matches!(role, Role::SourceAzimuth(_)) || s_is_source && matches!(role, Role::PhiS(_))
-        })?;
-        let view_azimuth = one(&|role| {
-            matches!(role, Role::ViewAzimuth(_)) || !s_is_source && matches!(role, Role::PhiS(_))
-        })?;
-        let wavelength = one(&|role| matches!(role, Role::Wavelength(_)))?;
-        let wavelength = wavelength.and_then(|i| match columns[i].role? {
-            Role::Wavelength(unit) => Some((i, unit)),
-            _ => None,
-        });
-        let value = one(&|role| matches!(role, Role::Value(_)))?;
-        let polarised = all(&|role| matches!(role, Role::Polarised(..)));
-        let signal = one(&|role| *role == Role::Signal)?;
-        let reference = one(&|role| *role == Role::Reference)?;
-        let channels: Vec<(usize, f64)> = columns
-            .iter()
-            .enumerate()
-            .filter_map(|(i, column)| match column.role? {
-                Role::Channel(um) => Some((i, um)),
-                _ => None,
-            })
-            .collect();
-        let readings = match (
-            value,
-            &polarised[..],
-            signal.zip(reference),
-            channels.is_empty(),
-        ) {
-            (Some(value), [], None, true) => Readings::One(value),
-            (None, [first, second], None, true) => polarised_pair(columns, *first, *second)?,
-            (None, [], Some((signal, reference)), true) => Readings::Ratio(signal, reference),
-            (None, [], None, false) => Readings::Channels(channels),
-            _ => {
-                return Err(
-                    "the reading is given in several ways: expected one column, a column for \
-                             each wavelength, brdf_s and brdf_p, or signal and reference"
-                        .to_owned(),
-                );
-            }
-        };
-        if let (Readings::Channels(_), Some((i, _))) = (&readings, wavelength) {
-            return Err(format!(
-                "\"{}\" is a wavelength, and the readings have a column for each wavelength",
-                columns[i].name
-            ));
-        }
-        Ok(Self {
-            psi: angle(psi),
-            theta: angle(theta).ok_or("no column for the view angle (theta_deg)")?,
-            source_azimuth: angle(source_azimuth),
-            view_azimuth: angle(view_azimuth),
-            wavelength,
-            sigma: one(&|role| *role == Role::Sigma)?,
-            n: one(&|role| *role == Role::Index)?,
-            readings,
-            unknown: (0..columns.len())
-                .filter(|&i| columns[i].role.is_none() && !columns[i].name.is_empty())
-                .collect(),
-        })
-    }
-}
-
-fn polarised_pair(columns: &[Column], first: usize, second: usize) -> Result<Readings, String> {
-    use crate::read::names::Polarisation;
-    let is_s = |i: usize| matches!(columns[i].role, Some(Role::Polarised(Polarisation::S, _)));
-    match (is_s(first), is_s(second)) {
-        (true, false) => Ok(Readings::Polarised(first, second)),
-        (false, true) => Ok(Readings::Polarised(second, first)),
-        _ => Err("one polarisation is given twice: expected brdf_s and brdf_p".to_owned()),
+        Roles::of(&self.columns).map_err(|message| text.line_error(self.number, message))
     }
 }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use brdf_core::check_refractive_index;
 
-use super::header::{AngleColumn, Column, Readings, Roles};
+use super::header::Column;
+use super::roles::{AngleColumn, Readings, Roles};
 use crate::read::conversion::Values;
 use crate::read::error::ReadError;
 use crate::read::names::{AngleForm, LengthUnit};

@@ -239,7 +239,7 @@ fn wrong_files_are_refused_with_line_and_value() {
         &with("goniometer.txt", ";70\n", ";120\n"),
         &[],
         ", line 5: the columns are azimuths, and the incidence angle is not given: expected a line \
-         such as \"# psi_deg: 30\" in the file",
+         such as \"# psi_deg: 30\" in the file (or --declare psi_deg=30)",
     );
 }
 

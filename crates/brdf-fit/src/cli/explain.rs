@@ -7,6 +7,7 @@ use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::inference::{Hint, Warning};
 use crate::objective::ObjectiveError;
+use crate::read::ReadError;
 use crate::report::DocumentError;
 use crate::tradeoff::fitting::TradeoffError;
 
@@ -41,6 +42,28 @@ pub(super) fn fit(error: &FitError) -> String {
         _ => return error.to_string(),
     };
     with_hint(error, hint)
+}
+
+/// Why a file cannot be read.
+pub(super) fn read(error: &ReadError) -> String {
+    let message = error.to_string();
+    let hints = [
+        ("in the options of the reading", "--columns \"NAME=ROLE\""),
+        (
+            "looks like a reading that was not taken",
+            "or --declare missing=VALUE",
+        ),
+        (
+            "the incidence angle is not given",
+            "or --declare psi_deg=30",
+        ),
+        (
+            "may be incidences or azimuths",
+            "or --declare columns=incidence",
+        ),
+    ];
+    let hint = hints.iter().find(|(words, _)| message.contains(words));
+    hint.map_or(message.clone(), |(_, hint)| with_hint(message, hint))
 }
 
 /// Why the ways to fit a scan cannot be compared.

@@ -34,7 +34,7 @@ pub(super) enum Failure {
     Parameter(#[from] ParameterError),
     #[error(transparent)]
     Domain(#[from] DomainError),
-    #[error(transparent)]
+    #[error("{}", explain::read(.0))]
     Read(#[from] ReadError),
     #[error("{}", explain::document(.0))]
     Document(#[from] DocumentError),

@@ -89,7 +89,7 @@ impl fmt::Display for Hint {
             ),
             Self::TooBright { factor } => write!(
                 f,
-                "three quarters of the readings are above {factor:.2} times that of a perfect white \
+                "three quarters of the readings are above {factor:.1} times that of a perfect white \
                  diffuser, 1/pi: if the values are percent, reflectance factors (pi f_r) or signals, \
                  state their quantity"
             ),

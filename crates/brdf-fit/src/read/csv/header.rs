@@ -304,9 +304,14 @@ impl Header {
         let columns: Vec<String> = self.columns.iter().take(12).map(column).collect();
         let example = self.columns.iter().find(|column| column.role.is_none());
         let example = example.map_or("R", |column| column.name.as_str());
+        let role = match self.missing().first() {
+            Some(missing) if missing.contains("psi_deg") => "psi_deg",
+            Some(missing) if missing.contains("theta_deg") => "theta_deg",
+            _ => "reflectance_factor_percent",
+        };
         format!(
-            "{}; say what a column is by its name, or by an option such as \
-             \"{example}=reflectance_factor_percent\"",
+            "{}; say what a column is by its name, or in the options of the reading, as in \
+             \"{example}={role}\"",
             columns.join(", ")
         )
     }
@@ -360,7 +365,11 @@ impl Header {
                     column.role?.in_words()
                 ))
             })
-            .map(|sentence| sentence.replace("is the the ", "is the "))
+            .map(|sentence| {
+                sentence
+                    .replace("is the the ", "is the ")
+                    .replace("is the f_r", "is f_r")
+            })
             .collect();
         (!words.is_empty()).then(|| words.join(", "))
     }

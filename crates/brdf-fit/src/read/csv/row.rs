@@ -49,8 +49,16 @@ pub(super) struct Found {
     pub(super) beyond: usize,
     /// Rows with a negative incidence angle.
     pub(super) mirrored: usize,
-    /// The largest absolute zenith angle, as it is written.
+    /// The largest absolute zenith angle that is read as degrees.
     pub(super) largest_angle: f64,
+}
+
+impl Found {
+    fn note_angle(&mut self, form: AngleForm, angle: f64) {
+        if matches!(form, AngleForm::Degrees | AngleForm::Unstated) {
+            self.largest_angle = self.largest_angle.max(angle.abs());
+        }
+    }
 }
 
 /// The directions of a row.
@@ -153,7 +161,7 @@ impl Reader {
         let (psi_deg, psi) = match self.roles.psi {
             Some(column) => {
                 let (raw, degrees) = row.angle(column, PSI)?;
-                found.largest_angle = found.largest_angle.max(raw.abs());
+                found.note_angle(column.1, raw);
                 let psi = match column.1 {
                     AngleForm::Radians => raw.abs(),
                     _ => degrees.abs().to_radians(),
@@ -165,7 +173,7 @@ impl Reader {
                 .map_or((0.0, 0.0), |psi| (psi, psi.abs().to_radians())),
         };
         let (raw, theta_deg) = row.angle(self.roles.theta, THETA)?;
-        found.largest_angle = found.largest_angle.max(raw.abs());
+        found.note_angle(self.roles.theta.1, raw);
         let azimuth = |column: Option<AngleColumn>| {
             let degrees = column.map(|column| row.angle(column, "expected an azimuth"));
             degrees

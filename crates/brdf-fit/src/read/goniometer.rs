@@ -309,12 +309,18 @@ impl Table {
                     continue;
                 }
                 let (theta, phi) = convention.in_model(*theta_deg, phi_deg);
+                let brdf = values.to_brdf(reading, theta);
+                if !is_reading(brdf) {
+                    let message =
+                        format!("\"{reading}\" is out of range: f_r would be {brdf:e} 1/sr");
+                    return Err(problem(message));
+                }
                 readings.push(Measurement {
                     wavelength_um,
                     psi: psi_deg.to_radians(),
                     theta,
                     phi,
-                    brdf: values.to_brdf(reading, theta),
+                    brdf,
                     sigma: None,
                 });
             }

@@ -84,46 +84,55 @@ impl Reader {
         let (theta, phi) = self
             .convention
             .in_model(directions.theta_deg, directions.phi_deg);
-        let mut add = |value: Option<f64>, wavelength_um, sigma: Option<f64>| match value {
-            None => found.not_taken += 1,
-            Some(value) => {
-                found.readings.push(Measurement {
-                    wavelength_um,
-                    psi: directions.psi,
-                    theta,
-                    phi,
-                    brdf: self.values.to_brdf(value, theta),
-                    sigma: sigma.map(|sigma| self.values.deviation(sigma, value, theta)),
-                });
+        let mut add = |column: usize, value: Option<f64>, wavelength_um, sigma: Option<f64>| {
+            let Some(value) = value else {
+                found.not_taken += 1;
+                return Ok(());
+            };
+            let brdf = self.values.to_brdf(value, theta);
+            let sigma = sigma.map(|sigma| self.values.deviation(sigma, value, theta));
+            if !is_reading(brdf) || sigma.is_some_and(|sigma| !is_deviation(sigma)) {
+                let message = format!("is out of range: f_r would be {brdf:e} 1/sr");
+                return Err(row.error(column, message));
             }
+            found.readings.push(Measurement {
+                wavelength_um,
+                psi: directions.psi,
+                theta,
+                phi,
+                brdf,
+                sigma,
+            });
+            Ok(())
         };
         match &self.roles.readings {
             Readings::One(column) => {
                 let value = self.value(row, *column)?;
-                add(value, wavelength_um, self.sigma(row)?);
+                add(*column, value, wavelength_um, self.sigma(row)?)
             }
-            Readings::Polarised(s, p) => {
-                let (s, p) = (self.value(row, *s)?, self.value(row, *p)?);
+            Readings::Polarised(first, second) => {
+                let (s, p) = (self.value(row, *first)?, self.value(row, *second)?);
                 let value = match self.polarisation {
                     Some(0) => s,
                     Some(_) => p,
                     None => s.zip(p).map(|(s, p)| 0.5 * (s + p)),
                 };
-                add(value, wavelength_um, None);
+                add(*first, value, wavelength_um, None)
             }
-            Readings::Ratio(signal, reference) => {
-                let signal = self.value(row, *signal)?;
+            Readings::Ratio(column, reference) => {
+                let signal = self.value(row, *column)?;
                 let expected = "expected the signal of the white standard, above 0";
                 let reference = row.value(*reference, expected, |x| x > 0.0)?;
-                add(signal.map(|signal| signal / reference), wavelength_um, None);
+                let ratio = signal.map(|signal| signal / reference);
+                add(*column, ratio, wavelength_um, None)
             }
             Readings::Channels(channels) => {
-                for (column, um) in channels {
-                    add(self.value(row, *column)?, Some(*um), None);
-                }
+                let mut channels = channels.iter();
+                channels.try_for_each(|(column, um)| {
+                    add(*column, self.value(row, *column)?, Some(*um), None)
+                })
             }
         }
-        Ok(())
     }
 
     fn readings_in_a_row(&self) -> usize {
@@ -143,11 +152,16 @@ impl Reader {
             LengthUnit::Unstated => "expected a wavelength above 0",
         };
         let number = row.value(column, expected, is_wavelength)?;
+        if unit != LengthUnit::Nanometres {
+            return Ok(Some(number));
+        }
         let text = row.fields.get(column).copied().unwrap_or_default();
-        Ok(match unit {
-            LengthUnit::Nanometres => micrometres(text).or(Some(number / 1000.0)),
-            LengthUnit::Micrometres | LengthUnit::Unstated => Some(number),
-        })
+        let um = micrometres(text).unwrap_or(number / 1000.0);
+        if is_wavelength(um) {
+            Ok(Some(um))
+        } else {
+            Err(row.error(column, "is too small for a wavelength"))
+        }
     }
 
     /// The directions of a row; `None` where one of them is at or beyond the horizon.
@@ -216,12 +230,7 @@ impl Reader {
             );
             return Err(row.error(column, message));
         }
-        let brdf = self.values.to_brdf(value, 0.0);
-        if is_reading(brdf) {
-            Ok(Some(value))
-        } else {
-            Err(row.error(column, "is too large for a reading"))
-        }
+        Ok(Some(value))
     }
 
     fn sigma(&self, row: &Row<'_>) -> Result<Option<f64>, ReadError> {

@@ -373,3 +373,49 @@ fn a_missing_standard_deviation_is_none() {
     let sigmas: Vec<_> = scan.readings().iter().map(|r| r.sigma).collect();
     assert_eq!(sigmas, [Some(0.1), None, None]);
 }
+
+#[test]
+fn conversions_do_not_leave_the_domain() {
+    for text in [
+        "# factor: 1e300\npsi_deg,theta_deg,brdf\n1,2,1e200\n",
+        "psi_deg,theta_deg,log10_brdf\n1,2,400\n",
+        "psi_deg,theta_deg,signal,reference\n1,2,1e200,1e-200\n",
+        "psi_deg,theta_deg,log10_brdf,sigma\n1,2,-280,1e-20\n",
+        "# unit: dB\npsi,10,20,30\n0,1,1e9,2\n",
+    ] {
+        assert!(error_of_any(text).contains("f_r would be"), "{text}");
+    }
+    let short = error("wavelength_nm,psi_deg,theta_deg,brdf\n1e-322,1,2,3\n");
+    assert!(short.contains("too small for a wavelength"), "{short}");
+}
+
+/// The error of a text of any format.
+fn error_of_any(text: &str) -> String {
+    let read = Measurements::from_bytes("a", text.as_bytes(), &ReadOptions::default());
+    read.unwrap_err().to_string()
+}
+
+proptest::proptest! {
+    #[test]
+    fn any_table_is_an_error_or_readings_in_the_domain(
+        names in proptest::sample::subsequence(
+            vec![
+                "psi_rad", "theta_i", "mu_out", "theta_r (deg)", "phi_i", "dphi", "brdf", "R%", "log10_brdf",
+                "BRDF (dB)", "450nm", "650 nm", "brdf_s", "brdf_p", "signal", "reference", "wavelength",
+                "wavelength_nm", "sigma", "n", "paint",
+            ],
+            2..7,
+        ),
+        rows in proptest::collection::vec(proptest::collection::vec("[0-9.,eE+−-]{0,6}", 7), 1..4),
+        comment in "(# (factor|unit|quantity|missing|psi_deg): ?[0-9a-z_.e-]{1,6}\n)?",
+    ) {
+        let row = |row: &Vec<String>| row[..names.len()].join(";");
+        let rows: Vec<String> = rows.iter().map(row).collect();
+        let table = format!("{comment}{}\n{}\n", names.join(";"), rows.join("\n"));
+        if let Ok(scan) = Measurements::from_bytes("a", table.as_bytes(), &ReadOptions::default()) {
+            for reading in scan.readings() {
+                proptest::prop_assert!(reading.validated().is_ok() && reading.geometry().is_ok());
+            }
+        }
+    }
+}

@@ -61,6 +61,8 @@ fn is_detected_as_merl(path: &Path) -> io::Result<bool> {
 
 fn by_content(head: &[u8]) -> Option<Format> {
     let mut zemax_lines = 0;
+    // A comment above another format may name columns as well.
+    let mut has_header = false;
     for (_, line) in lines(head) {
         match first_word(line) {
             b"VARS" => return Some(Format::Astm),
@@ -73,9 +75,10 @@ fn by_content(head: &[u8]) -> Option<Format> {
         if zemax_lines == 2 {
             return Some(Format::Zemax);
         }
-        if csv::is_header(line) {
-            return Some(Format::Csv);
-        }
+        has_header = has_header || csv::is_header(line);
+    }
+    if has_header {
+        return Some(Format::Csv);
     }
     goniometer::is_table(head).then_some(Format::Goniometer)
 }
@@ -107,6 +110,8 @@ mod tests {
         assert_eq!(detected(csv, "a.bsdf"), Some(Format::Csv));
         let astm = "LAB_NAME x\nVARS theta_i,phi_i,theta_s,phi_s,BRDF\n";
         assert_eq!(detected(astm, "a.csv"), Some(Format::Astm));
+        let commented = format!("# theta_i, theta_s, BRDF\n{astm}");
+        assert_eq!(detected(&commented, "a.txt"), Some(Format::Astm));
         let zemax = "\u{feff}# x\r\nSource\tMeasured\r\nSymmetry  PlaneSymmetrical\r\nSpectralContent Monochrome\r\n";
         assert_eq!(detected(zemax, "a.txt"), Some(Format::Zemax));
         let black_lab = "BRF Values\nsrc_z\tsrc_a\tview_z\tview_a\t630.79nm\n";

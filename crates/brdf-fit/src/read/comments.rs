@@ -5,7 +5,7 @@ use std::fmt::Display;
 use super::conversion::{Kind, Quantity, Scale, Values};
 use super::error::ReadError;
 use super::names::quantity_named;
-use super::number::parse_number;
+use super::number::{is_wavelength, parse_number};
 use super::text::Text;
 use crate::scan::{Metadata, RefractiveIndex};
 
@@ -231,4 +231,21 @@ pub(super) fn number_of_key(
         Some(number) if number.is_finite() && accepts(number) => Ok(Some(number)),
         _ => Err(text.error(format!("{key}: \"{value}\": {expected}"))),
     }
+}
+
+/// The wavelength in micrometres that the metadata give by `wavelength_um` or `wavelength_nm`.
+///
+/// # Errors
+///
+/// As [`number_of_key`].
+pub(super) fn stated_wavelength_um(
+    text: &Text<'_>,
+    metadata: &Metadata,
+) -> Result<Option<f64>, ReadError> {
+    let number = |key, expected, accepts| number_of_key(text, metadata, key, expected, accepts);
+    let expected = "expected micrometres above 0";
+    let micrometres = number("wavelength_um", expected, is_wavelength)?;
+    let expected = "expected nanometres above 0";
+    let nanometres = number("wavelength_nm", expected, |nm| is_wavelength(nm / 1000.0))?;
+    Ok(micrometres.or(nanometres.map(|nm| nm / 1000.0)))
 }

@@ -81,7 +81,12 @@ impl Measurements {
     ///
     /// As [`read`](Self::read).
     pub fn from_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, ReadError> {
-        from_bytes(Path::new(name), bytes, options)
+        let path = Path::new(name);
+        let head = usize::try_from(detect::HEAD).unwrap_or(usize::MAX);
+        if !may_be_merl(bytes, options) {
+            check_head(path, &bytes[..bytes.len().min(head)], options)?;
+        }
+        from_bytes(path, bytes, options)
     }
 }
 
@@ -103,10 +108,6 @@ fn may_be_merl(head: &[u8], options: &ReadOptions) -> bool {
 fn from_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
     let known = options.format.or_else(|| Format::detect(bytes, path));
     let format = known.unwrap_or_default();
-    if format != Format::Merl {
-        let head = usize::try_from(detect::HEAD).unwrap_or(usize::MAX);
-        check_head(path, &bytes[..bytes.len().min(head)], options)?;
-    }
     if format == Format::Merl {
         let name = path.display().to_string();
         return merl::read(merl::Table::new(Cursor::new(bytes), &name)?, options);

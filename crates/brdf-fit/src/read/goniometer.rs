@@ -23,7 +23,7 @@
 //! negative. Anything else is an error that asks.
 //!
 //! Comments are as in [`csv`](super::csv), with its keys `quantity`, `unit`, `factor`, `missing`,
-//! `refractive_index`, `wavelength_um`, and
+//! `refractive_index`, `wavelength_um`, `wavelength_nm`, and
 //! - `phi_deg`: the view azimuth phi in degrees, 0 by default, for a table outside the plane of
 //!   incidence;
 //! - `psi_deg` and `columns`, as above.
@@ -31,11 +31,11 @@
 //! There is no standard for such tables: this is the common form of goniometers' spreadsheets. The
 //! files of the Black Lab have another form, see [`black_lab`](super::black_lab).
 
-use super::comments::{Comments, comment_of, number_of_key};
+use super::comments::{Comments, comment_of, number_of_key, stated_wavelength_um};
 use super::conversion::{BEYOND_HORIZON, Quantity, left_out};
 use super::error::ReadError;
 use super::fields::Separator;
-use super::number::{Field, is_angle, is_reading, is_wavelength, parse_number, was_not_taken};
+use super::number::{Field, is_angle, is_reading, parse_number, was_not_taken};
 use super::options::ReadOptions;
 use super::text::{Text, lines};
 use crate::scan::{Convention, Format, Measurement, Measurements};
@@ -279,8 +279,7 @@ impl Table {
         let number = |key, expected, accepts| {
             number_of_key(text, &comments.metadata, key, expected, accepts)
         };
-        let expected = "expected micrometres above 0";
-        let wavelength_um = number("wavelength_um", expected, is_wavelength)?;
+        let wavelength_um = stated_wavelength_um(text, &comments.metadata)?;
         let phi_deg = number("phi_deg", "expected degrees", is_angle)?.unwrap_or(0.0);
         let expected = "expected degrees from 0 to below 90";
         let psi_deg = number("psi_deg", expected, |psi| (0.0..90.0).contains(&psi))?;

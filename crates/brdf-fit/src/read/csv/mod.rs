@@ -56,11 +56,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Read;
 use std::path::Path;
 
-use super::comments::{Comments, SOURCE_AZIMUTH, comment_of, number_of_key};
+use super::comments::{Comments, SOURCE_AZIMUTH, comment_of, number_of_key, stated_wavelength_um};
 use super::conversion::{BEYOND_HORIZON, Kind, NOT_TAKEN, Quantity, left_out};
 use super::error::ReadError;
 use super::names::{AngleForm, LengthUnit, Role};
-use super::number::{is_angle, is_wavelength};
+use super::number::is_angle;
 use super::options::ReadOptions;
 use super::text::{Text, read_bytes};
 use crate::scan::{Convention, Measurement, Measurements};
@@ -215,16 +215,6 @@ fn reader(
         .map_err(of_header)?;
     let number =
         |key, expected, accepts| number_of_key(text, &comments.metadata, key, expected, accepts);
-    let micrometres = number(
-        "wavelength_um",
-        "expected micrometres above 0",
-        is_wavelength,
-    )?;
-    let nanometres = number(
-        "wavelength_nm",
-        "expected nanometres above 0",
-        is_wavelength,
-    )?;
     let psi_deg = number("psi_deg", "expected degrees between -90 and 90", |x| {
         x.abs() < 90.0
     })?;
@@ -252,7 +242,7 @@ fn reader(
         psi_deg,
         phi_deg: number("phi_deg", "expected degrees", is_angle)?,
         source_azimuth_deg: number(SOURCE_AZIMUTH, "expected degrees", is_angle)?,
-        wavelength_um: micrometres.or(nanometres.map(|nm| nm / 1000.0)),
+        wavelength_um: stated_wavelength_um(text, &comments.metadata)?,
         roles,
     })
 }

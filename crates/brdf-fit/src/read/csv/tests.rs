@@ -387,6 +387,10 @@ fn conversions_do_not_leave_the_domain() {
     }
     let short = error("wavelength_nm,psi_deg,theta_deg,brdf\n1e-322,1,2,3\n");
     assert!(short.contains("too small for a wavelength"), "{short}");
+    for table in ["psi_deg,theta_deg,brdf\n1,2,3\n", "psi,10,20\n0,1,2\n"] {
+        let short = error_of_any(&format!("# wavelength_nm: 1e-322\n{table}"));
+        assert!(short.contains("wavelength_nm: \"1e-322\""), "{short}");
+    }
 }
 
 /// The error of a text of any format.

@@ -32,10 +32,19 @@ use super::conversion::{BEYOND_HORIZON, Kind, Quantity, left_out};
 use super::error::ReadError;
 use super::number::{Field, is_angle, is_reading, micrometres};
 use super::options::ReadOptions;
-use super::text::{Text, words};
+use super::reader::{Content, Reader};
+use super::text::{Text, first_words, words};
 use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
 
 const ANGLES: [&str; 4] = ["src_z", "src_a", "view_z", "view_a"];
+
+pub(super) const READER: Reader = Reader {
+    format: Format::BlackLab,
+    // These files have no extension of their own.
+    extensions: &[],
+    recognises: |bytes| first_words(bytes).any(|word| word == b"src_z"),
+    content: Content::Text(read),
+};
 
 /// # Errors
 ///

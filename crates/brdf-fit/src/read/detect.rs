@@ -4,38 +4,31 @@ use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::Path;
 
+use super::merl;
 use super::options::ReadOptions;
-use super::text::{lines, without_byte_order_mark};
-use super::{csv, goniometer, merl};
+use super::reader::{READERS, Reader};
+use super::text::HEAD;
 use crate::scan::Format;
 
-/// How many bytes of a file are searched for the marks of a format: more than any header with its
-/// comments.
-pub(super) const HEAD: u64 = 65_536;
-
 impl Format {
-    /// Detects the format of a text that begins with `head`, or of a binary table that `head` is the
+    /// Detects the format of a text that begins with `head`, or of a binary file that `head` is the
     /// whole of; `None` where neither the content nor the extension of `path` is that of a known
     /// format. The content takes precedence.
     pub fn detect(head: &[u8], path: &Path) -> Option<Self> {
-        if merl::is_table(head, head.len() as u64) {
-            return Some(Self::Merl);
-        }
-        let end = head.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX));
-        by_content(without_byte_order_mark(&head[..end])).or_else(|| by_extension(path))
+        by_content(head).or_else(|| by_extension(path))
     }
 
     /// The usual extensions of files in the format, without the dot.
     pub fn extensions(self) -> &'static [&'static str] {
-        match self {
-            Self::Csv => &["csv", "tsv"],
-            Self::Merl => &["binary"],
-            Self::Astm => &["astm"],
-            Self::Zemax => &["bsdf"],
-            // These files have no extension of their own.
-            Self::BlackLab | Self::Goniometer => &[],
-        }
+        Reader::of(self).extensions
     }
+}
+
+/// The reader of a format whose mark a file carries.
+pub(super) fn by_mark(head: &[u8]) -> Option<&'static Reader> {
+    const MARKED: &[Reader] = &READERS;
+    let mut marked = MARKED.iter().filter(|reader| reader.has_mark());
+    marked.find(|reader| (reader.recognises)(head))
 }
 
 /// Whether a file is read as a MERL table, channel by channel: by the format in the options, by its
@@ -55,32 +48,13 @@ fn is_detected_as_merl(path: &Path) -> io::Result<bool> {
     let file = File::open(path)?;
     let size = file.metadata()?.len();
     let mut head = Vec::new();
-    file.take(HEAD).read_to_end(&mut head)?;
+    file.take(HEAD as u64).read_to_end(&mut head)?;
     Ok(merl::is_table(&head, size) || Format::detect(&head, path) == Some(Format::Merl))
 }
 
 fn by_content(head: &[u8]) -> Option<Format> {
-    let mut zemax_lines = 0;
-    // A comment above another format may name columns as well.
-    let mut has_header = false;
-    for (_, line) in lines(head) {
-        match first_word(line) {
-            b"VARS" => return Some(Format::Astm),
-            b"src_z" => return Some(Format::BlackLab),
-            b"Symmetry" | b"SpectralContent" | b"ScatterType" | b"SampleRotation" => {
-                zemax_lines += 1;
-            }
-            _ => {}
-        }
-        if zemax_lines == 2 {
-            return Some(Format::Zemax);
-        }
-        has_header = has_header || csv::is_header(line);
-    }
-    if has_header {
-        return Some(Format::Csv);
-    }
-    goniometer::is_table(head).then_some(Format::Goniometer)
+    let found = READERS.iter().find(|reader| (reader.recognises)(head));
+    found.map(|reader| reader.format)
 }
 
 fn by_extension(path: &Path) -> Option<Format> {
@@ -89,11 +63,6 @@ fn by_extension(path: &Path) -> Option<Format> {
     let mut formats = formats.filter(|&format| format != Format::Csv);
     // CSV is the default: an extension such as .csv does not show that the format is known.
     formats.find(|format| format.extensions().contains(&extension.as_str()))
-}
-
-fn first_word(line: &[u8]) -> &[u8] {
-    let mut words = line.trim_ascii_start().split(u8::is_ascii_whitespace);
-    words.next().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -1,14 +1,15 @@
 //! Reading a file of any format.
 
 use std::fs::File;
-use std::io::{Cursor, Read};
+use std::io::Read;
 use std::path::Path;
 
 use super::error::ReadError;
 use super::foreign::foreign;
 use super::options::ReadOptions;
-use super::text::{Text, read_bytes};
-use super::{astm, black_lab, csv, detect, goniometer, merl, zemax};
+use super::reader::Reader;
+use super::text::{HEAD, Text, read_bytes};
+use super::{detect, merl};
 use crate::scan::{Format, Measurements};
 
 impl Measurements {
@@ -44,7 +45,7 @@ impl Measurements {
         let mut file = File::open(path).map_err(io)?;
         let size = file.metadata().map_err(io)?.len();
         let mut head = Vec::new();
-        let mut beginning = file.by_ref().take(detect::HEAD);
+        let mut beginning = file.by_ref().take(HEAD as u64);
         beginning.read_to_end(&mut head).map_err(io)?;
         check_head(path, &head, options)?;
         let bytes = read_bytes(head, file, size).map_err(io)?;
@@ -65,7 +66,7 @@ impl Measurements {
         let path = Path::new(name);
         let io = |error| ReadError::io(path, error);
         let (mut reader, mut head) = (reader, Vec::new());
-        let mut beginning = reader.by_ref().take(detect::HEAD);
+        let mut beginning = reader.by_ref().take(HEAD as u64);
         beginning.read_to_end(&mut head).map_err(io)?;
         if !may_be_merl(&head, options) {
             check_head(path, &head, options)?;
@@ -82,9 +83,8 @@ impl Measurements {
     /// As [`read`](Self::read).
     pub fn from_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Self, ReadError> {
         let path = Path::new(name);
-        let head = usize::try_from(detect::HEAD).unwrap_or(usize::MAX);
         if !may_be_merl(bytes, options) {
-            check_head(path, &bytes[..bytes.len().min(head)], options)?;
+            check_head(path, &bytes[..bytes.len().min(HEAD)], options)?;
         }
         from_bytes(path, bytes, options)
     }
@@ -92,8 +92,12 @@ impl Measurements {
 
 /// Refuses a file by its first block: one of another program, or binary data.
 fn check_head(path: &Path, head: &[u8], options: &ReadOptions) -> Result<(), ReadError> {
-    let foreign = foreign(head).filter(|_| options.format.is_none());
-    match foreign {
+    let reader = options.format.map(Reader::of);
+    let reader = reader.or_else(|| detect::by_mark(head));
+    if reader.is_some_and(Reader::is_binary) {
+        return Ok(());
+    }
+    match foreign(head).filter(|_| reader.is_none()) {
         Some(message) => Err(ReadError::file(path, message)),
         None if head.iter().all(u8::is_ascii_whitespace) => Ok(()),
         None => Text::new(path, head).map(|_| ()),
@@ -107,33 +111,16 @@ fn may_be_merl(head: &[u8], options: &ReadOptions) -> bool {
 
 fn from_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
     let known = options.format.or_else(|| Format::detect(bytes, path));
-    let format = known.unwrap_or_default();
-    if format == Format::Merl {
-        let name = path.display().to_string();
-        return merl::read(merl::Table::new(Cursor::new(bytes), &name)?, options);
-    }
-    let all = from_text(format, path, bytes, options).map_err(|error| match known {
-        Some(_) => error,
-        None => error.with_known_formats(),
-    })?;
+    let reader = Reader::of(known.unwrap_or_default());
+    let all = reader
+        .read(path, bytes, options)
+        .map_err(|error| match known {
+            Some(_) => error,
+            None => error.with_known_formats(),
+        })?;
     Ok(match options.sample {
-        Some(count) => all.sampled(count),
-        None => all,
+        // The channels of a MERL table are sampled one after the other.
+        Some(count) if reader.format != Format::Merl => all.sampled(count),
+        _ => all,
     })
-}
-
-fn from_text(
-    format: Format,
-    path: &Path,
-    bytes: &[u8],
-    options: &ReadOptions,
-) -> Result<Measurements, ReadError> {
-    let text = Text::new(path, bytes)?;
-    match format {
-        Format::Csv | Format::Merl => csv::read(text, options),
-        Format::Astm => astm::read(text, options),
-        Format::Zemax => zemax::read(text, options),
-        Format::BlackLab => black_lab::read(text, options),
-        Format::Goniometer => goniometer::read(text, options),
-    }
 }

@@ -37,8 +37,17 @@ use super::error::ReadError;
 use super::fields::Separator;
 use super::number::{Field, is_angle, is_reading, parse_number, was_not_taken};
 use super::options::ReadOptions;
-use super::text::{Text, lines};
+use super::reader::{Content, Reader};
+use super::text::{Text, head_lines};
 use crate::scan::{Convention, Format, Measurement, Measurements};
+
+pub(super) const READER: Reader = Reader {
+    format: Format::Goniometer,
+    // These files have no extension of their own.
+    extensions: &[],
+    recognises: is_table,
+    content: Content::Table(read),
+};
 
 const COLUMN: &str = "angles";
 const VIEW: &str = "view";
@@ -67,9 +76,9 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
 }
 
 /// Whether a text begins with such a table.
-pub(super) fn is_table(head: &[u8]) -> bool {
+fn is_table(head: &[u8]) -> bool {
     let is_row = |line: &&[u8]| comment_of(line).is_none() && !line.trim_ascii().is_empty();
-    let mut rows = lines(head).map(|(_, line)| line).filter(is_row);
+    let mut rows = head_lines(head).filter(is_row);
     let (Some(header), Some(first)) = (rows.next(), rows.next()) else {
         return false;
     };

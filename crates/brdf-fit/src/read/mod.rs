@@ -21,6 +21,7 @@ pub mod merl;
 mod names;
 mod number;
 mod options;
+mod reader;
 mod text;
 pub mod zemax;
 

@@ -13,6 +13,10 @@ pub(super) const MAX_LINE: usize = 65_536;
 /// The largest file in bytes: the limit keeps an endless input from filling the memory.
 const MAX_FILE: u64 = 4 << 30;
 
+/// How many bytes of a file are searched for the marks of a format: more than any header with its
+/// comments.
+pub(super) const HEAD: usize = 65_536;
+
 /// How many bytes are read before the length of the last line is checked again.
 const CHUNK: u64 = 1 << 20;
 
@@ -167,6 +171,20 @@ fn text_in(bytes: &[u8]) -> Result<&[u8], &'static str> {
 
 pub(super) fn without_byte_order_mark(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// The lines at the beginning of a file, in which the mark of a format is searched.
+pub(super) fn head_lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let head = without_byte_order_mark(&bytes[..bytes.len().min(HEAD)]);
+    lines(head).map(|(_, line)| line)
+}
+
+/// The first word of each line at the beginning of a file.
+pub(super) fn first_words(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    head_lines(bytes).map(|line| {
+        let mut words = line.trim_ascii_start().split(u8::is_ascii_whitespace);
+        words.next().unwrap_or_default()
+    })
 }
 
 /// The number and the text of each line. A line ends with LF, CR or CR LF.

@@ -63,10 +63,18 @@ mod rows;
 use super::comments::comment_of;
 use super::error::ReadError;
 use super::options::ReadOptions;
-use super::text::Text;
-use crate::scan::Measurements;
+use super::reader::{Content, Reader};
+use super::text::{Text, first_words};
+use crate::scan::{Format, Measurements};
 use header::Header;
 use rows::Rows;
+
+pub(super) const READER: Reader = Reader {
+    format: Format::Astm,
+    extensions: &["astm"],
+    recognises: |bytes| first_words(bytes).any(|word| word == b"VARS"),
+    content: Content::Text(read),
+};
 
 /// # Errors
 ///

@@ -23,7 +23,7 @@ const OWN_NAMES: [&str; 7] = [
 ];
 
 /// Whether a line names the columns of a table. Some programs write the header behind a `#`.
-pub(in crate::read) fn is_header(line: &[u8]) -> bool {
+pub(super) fn is_header(line: &[u8]) -> bool {
     let comment = comment_of(line);
     let (line, needs_psi) = match comment.and_then(after_format) {
         Some(names) => (names, false),

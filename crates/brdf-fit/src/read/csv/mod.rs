@@ -62,12 +62,19 @@ use super::error::ReadError;
 use super::names::{AngleForm, LengthUnit, Role};
 use super::number::is_angle;
 use super::options::ReadOptions;
-use super::text::{Text, read_bytes};
-use crate::scan::{Convention, Measurement, Measurements};
-pub(super) use header::is_header;
-use header::{Header, Preamble};
+use super::reader::{Content, Reader};
+use super::text::{Text, head_lines, read_bytes};
+use crate::scan::{Convention, Format, Measurement, Measurements};
+use header::{Header, Preamble, is_header};
 use roles::{Readings, Roles};
-use row::{Found, IndexColumn, Reader, Row};
+use row::{Found, IndexColumn, Row, RowReader};
+
+pub(super) const READER: Reader = Reader {
+    format: Format::Csv,
+    extensions: &["csv", "tsv"],
+    recognises: |bytes| head_lines(bytes).any(is_header),
+    content: Content::Table(read),
+};
 
 /// Angles without a unit, all of which are below this, may be radians: a little above pi/2.
 const MAY_BE_RADIANS: f64 = 1.6;
@@ -207,7 +214,7 @@ fn reader(
     header: &Header,
     comments: &Comments,
     options: &ReadOptions,
-) -> Result<Reader, ReadError> {
+) -> Result<RowReader, ReadError> {
     let roles = header.roles(text)?;
     let of_header = |message: String| text.line_error(header.number, message);
     let values = comments
@@ -234,7 +241,7 @@ fn reader(
             return Err(text.error(message));
         }
     };
-    Ok(Reader {
+    Ok(RowReader {
         values,
         convention: options.convention(Convention::default()),
         missing: comments.missing(),
@@ -291,7 +298,7 @@ fn for_each_row(
 fn check_found(
     text: &Text<'_>,
     header: &Header,
-    reader: &Reader,
+    reader: &RowReader,
     found: &mut Found,
 ) -> Result<(), ReadError> {
     let problem = |message: String| Err(text.line_error(header.number, message));
@@ -339,7 +346,7 @@ fn check_found(
 }
 
 /// The sentences that report what was understood, converted and left out.
-fn conversions(header: &Header, reader: &Reader, found: &Found, skipped: usize) -> Vec<String> {
+fn conversions(header: &Header, reader: &RowReader, found: &Found, skipped: usize) -> Vec<String> {
     let mut all: Vec<String> = header.sentence().into_iter().collect();
     if let Some((_, LengthUnit::Unstated)) = reader.roles.wavelength {
         let um = found

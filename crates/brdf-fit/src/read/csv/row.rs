@@ -26,7 +26,7 @@ pub(super) struct Row<'a> {
 }
 
 /// How the rows of a table are read.
-pub(super) struct Reader {
+pub(super) struct RowReader {
     pub(super) roles: Roles,
     pub(super) values: Values,
     pub(super) convention: Convention,
@@ -68,7 +68,7 @@ struct Directions {
     phi_deg: f64,
 }
 
-impl Reader {
+impl RowReader {
     /// Adds the readings of a row, converted to f_r and the model's convention.
     ///
     /// # Errors

@@ -30,15 +30,26 @@ mod channels;
 mod header;
 mod table;
 
-use std::io::{Read, Seek};
+use std::io::{Cursor, Read, Seek};
 
 use super::error::ReadError;
 use super::options::ReadOptions;
-use crate::scan::Measurements;
+use super::reader::{Content, Reader};
+use crate::scan::{Format, Measurements};
 pub use bins::Bins;
 pub use channels::Channel;
 pub(super) use header::{begins_table, is_table};
 pub use table::Table;
+
+pub(super) const READER: Reader = Reader {
+    format: Format::Merl,
+    extensions: &["binary"],
+    recognises: |bytes| is_table(bytes, bytes.len() as u64),
+    content: Content::Bytes(|path, bytes, options| {
+        let name = path.display().to_string();
+        read(Table::new(Cursor::new(bytes), &name)?, options)
+    }),
+};
 
 /// The channels of a table one after the other, in ascending order of wavelength, each with as many
 /// readings as the options keep.

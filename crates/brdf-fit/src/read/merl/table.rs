@@ -78,8 +78,10 @@ impl<R: Read + Seek> Table<R> {
 
     /// # Errors
     ///
-    /// The options set an angular convention: the half and difference angles of a table have none.
+    /// The options set an angular convention, which the half and difference angles of a table do not
+    /// have, or declare columns or comments.
     pub(in crate::read) fn check_options(&self, options: &ReadOptions) -> Result<(), ReadError> {
+        super::READER.check_options(&self.path, options)?;
         let why = "a MERL table has angles about the half vector";
         options
             .fixed_convention(&self.path, Convention::default(), why)

@@ -68,13 +68,33 @@ use super::comments::number_of_key;
 use super::error::ReadError;
 use super::number::is_wavelength;
 use super::options::ReadOptions;
-use super::text::Text;
+use super::reader::{Content, Reader};
+use super::text::{Text, first_words};
 use crate::scan::{Convention, Format, Measurements, Metadata, RefractiveIndex};
 use readings::Readings;
 use sections::Header;
 #[cfg(feature = "export")]
 pub(crate) use specular::from_specular;
 use tokens::Tokens;
+
+pub(super) const READER: Reader = Reader {
+    format: Format::Zemax,
+    extensions: &["bsdf"],
+    recognises: has_keywords,
+    content: Content::Text(read),
+};
+
+/// Whether two lines of a text begin with keywords of the format.
+fn has_keywords(bytes: &[u8]) -> bool {
+    const KEYWORDS: [&[u8]; 4] = [
+        b"Symmetry",
+        b"SpectralContent",
+        b"ScatterType",
+        b"SampleRotation",
+    ];
+    let found = first_words(bytes).filter(|word| KEYWORDS.contains(word));
+    found.take(2).count() == 2
+}
 
 /// # Errors
 ///

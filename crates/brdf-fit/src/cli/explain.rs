@@ -7,7 +7,7 @@ use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::inference::{Hint, Warning};
 use crate::objective::ObjectiveError;
-use crate::read::ReadError;
+use crate::read::{ReadError, Remedy};
 use crate::report::DocumentError;
 use crate::tradeoff::fitting::TradeoffError;
 
@@ -46,24 +46,14 @@ pub(super) fn fit(error: &FitError) -> String {
 
 /// Why a file cannot be read.
 pub(super) fn read(error: &ReadError) -> String {
-    let message = error.to_string();
-    let hints = [
-        ("in the options of the reading", "--columns \"NAME=ROLE\""),
-        (
-            "looks like a reading that was not taken",
-            "or --declare missing=VALUE",
-        ),
-        (
-            "the incidence angle is not given",
-            "or --declare psi_deg=30",
-        ),
-        (
-            "may be incidences or azimuths",
-            "or --declare columns=incidence",
-        ),
-    ];
-    let hint = hints.iter().find(|(words, _)| message.contains(words));
-    hint.map_or(message.clone(), |(_, hint)| with_hint(message, hint))
+    let hint = match error.remedy() {
+        Some(Remedy::Columns) => "--columns \"NAME=ROLE\"",
+        Some(Remedy::Incidence) => "or --declare psi_deg=30",
+        Some(Remedy::ColumnAngles) => "or --declare columns=incidence",
+        Some(Remedy::Missing) => "or --declare missing=VALUE",
+        _ => return error.to_string(),
+    };
+    with_hint(error, hint)
 }
 
 /// Why the ways to fit a scan cannot be compared.

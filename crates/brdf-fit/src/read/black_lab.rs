@@ -28,9 +28,9 @@
 //! the azimuth follows from these files: the specular lobe of a coating is at a difference of 180 deg.
 
 use super::angles::{AngleUnit, TwoDirections};
-use super::conversion::{BEYOND_HORIZON, Kind, Quantity, left_out};
+use super::conversion::{Kind, LeftOut, Quantity};
 use super::error::ReadError;
-use super::number::{Field, is_angle, is_reading, micrometres};
+use super::number::{Field, is_angle, micrometres};
 use super::options::ReadOptions;
 use super::reader::{Content, Reader};
 use super::text::{Text, first_words, words};
@@ -56,20 +56,20 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
     let mut lines = text.checked_lines();
     let header = Header::read(&text, &mut lines)?;
     let mut readings = Vec::new();
-    let mut beyond = 0;
+    let mut left = LeftOut::default();
     for line in lines {
         let (number, line) = line?;
         if line.trim_ascii().is_empty() {
             continue;
         }
-        beyond += header.add_row(&text, number, line, &mut readings)?;
+        header.add_row(&text, number, line, &mut readings, &mut left)?;
     }
     if readings.is_empty() {
         let message = "no readings follow the column names";
         return Err(text.line_error(header.number, message));
     }
     let mut conversions: Vec<String> = header.quantity.conversion().into_iter().collect();
-    conversions.extend(left_out(beyond, BEYOND_HORIZON));
+    conversions.extend(left.notes());
     Ok(Measurements {
         source: text.path.display().to_string(),
         metadata: header.metadata,
@@ -115,14 +115,15 @@ impl Header {
         ))
     }
 
-    /// Adds the readings of a row. Returns how many are left out because they are beyond the horizon.
+    /// Adds the readings of a row, and counts those that are left out.
     fn add_row(
         &self,
         text: &Text<'_>,
         number: u64,
         line: &[u8],
         readings: &mut Vec<Measurement>,
-    ) -> Result<usize, ReadError> {
+        left: &mut LeftOut,
+    ) -> Result<(), ReadError> {
         let fields: Vec<&[u8]> = words(line).collect();
         let (found, expected) = (fields.len(), ANGLES.len() + self.wavelengths.len());
         if found != expected {
@@ -144,18 +145,25 @@ impl Header {
         };
         let model = directions.in_model(AngleUnit::Degrees);
         for (field, (name, wavelength_um)) in values.iter().zip(&self.wavelengths) {
-            let field = Field::plain(field);
-            let value = text.number(number, name, &field, "expected a reading", is_reading)?;
-            readings.extend(model.map(|(psi, theta, phi)| Measurement {
+            let value = text.reading(number, name, &Field::plain(field), None)?;
+            let Some((psi, theta, phi)) = model else {
+                left.beyond += 1;
+                continue;
+            };
+            let Some(value) = value else {
+                left.not_taken += 1;
+                continue;
+            };
+            readings.push(Measurement {
                 wavelength_um: Some(*wavelength_um),
                 psi,
                 theta,
                 phi,
                 brdf: self.quantity.to_brdf(value, theta),
                 sigma: None,
-            }));
+            });
         }
-        Ok(if model.is_some() { 0 } else { values.len() })
+        Ok(())
     }
 }
 
@@ -254,11 +262,15 @@ mod tests {
     }
 
     #[test]
-    fn readings_at_or_beyond_the_horizon_are_counted() {
-        let more = format!("{TWO}20 0 90 180 1 1\n95 0 20 180 1 1\n");
+    fn readings_that_were_not_taken_or_lie_beyond_the_horizon_are_counted() {
+        let more = format!("{TWO}20 0 90 180 1 1\n95 0 20 180 1 1\n5 0 6 0 nan 0.1\n");
         let scan = read_with(&more, &ReadOptions::default()).unwrap();
-        assert_eq!(scan.readings().len(), 4);
-        assert!(scan.conversions[1].starts_with("4 readings at or beyond 90 deg"));
+        assert_eq!(scan.readings().len(), 5);
+        assert!(
+            scan.conversions[1].starts_with("1 reading not taken"),
+            "{scan:?}"
+        );
+        assert!(scan.conversions[2].starts_with("4 readings at or beyond 90 deg"));
     }
 
     #[test]
@@ -269,7 +281,12 @@ mod tests {
             "a.txt, line 7: 5 fields: expected 6, one for each column"
         );
         assert!(row("1 2 x 4 5 6").contains("line 7, column view_z: \"x\" is not a number"));
-        assert!(row("1 2 3 4 5 nan").contains("column 852.23nm: \"nan\" is not a finite number"));
+        assert!(row("1 2 3 4 5 inf").contains("column 852.23nm: \"inf\" is not a finite number"));
+        let sentinel = row("1 2 3 4 5 -999");
+        assert!(
+            sentinel.contains("\"-999\" looks like a reading that was not taken"),
+            "{sentinel}"
+        );
         assert!(error("BRF Values\nsrc_z src_a\n").contains("line 2: expected the columns"));
         assert!(error("src_z src_a view_z view_a 5nm\n").contains("\"BRF Values\""));
         assert!(error("BRF\nsrc_z src_a view_z view_a x\n").contains("such as 630.79nm"));

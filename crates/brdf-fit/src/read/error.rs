@@ -24,6 +24,8 @@ pub enum ReadError {
         path: PathBuf,
         /// What is wrong, and what was expected.
         message: String,
+        /// What the options of the reading can say in place of the file.
+        remedy: Option<Remedy>,
     },
     /// A line is not as expected.
     #[error("{}, line {line}: {message}", path.display())]
@@ -34,6 +36,8 @@ pub enum ReadError {
         line: u64,
         /// What is wrong, and what was expected.
         message: String,
+        /// What the options of the reading can say in place of the file.
+        remedy: Option<Remedy>,
     },
     /// A single value is not as expected.
     #[error("{}, line {line}, column {column}: \"{value}\" {message}", path.display())]
@@ -48,10 +52,47 @@ pub enum ReadError {
         value: String,
         /// What is wrong, and what was expected.
         message: String,
+        /// What the options of the reading can say in place of the file.
+        remedy: Option<Remedy>,
     },
 }
 
+/// What the [options](super::ReadOptions) of the reading can say where a file does not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// [`ReadOptions::columns`](super::ReadOptions::columns): what a column is.
+    Columns,
+    /// The declaration `psi_deg`: the incidence angle.
+    Incidence,
+    /// The declaration `columns`: whether the angles of columns are incidences or azimuths.
+    ColumnAngles,
+    /// The declaration `missing`: the number that stands for a reading that was not taken.
+    Missing,
+}
+
 impl ReadError {
+    /// What the options of the reading can say where the file does not.
+    pub fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::Io { .. } => None,
+            Self::File { remedy, .. } | Self::Line { remedy, .. } | Self::Value { remedy, .. } => {
+                *remedy
+            }
+        }
+    }
+
+    /// The error with another remedy.
+    pub(super) fn with_remedy(mut self, to: Option<Remedy>) -> Self {
+        match &mut self {
+            Self::Io { .. } => {}
+            Self::File { remedy, .. } | Self::Line { remedy, .. } | Self::Value { remedy, .. } => {
+                *remedy = to;
+            }
+        }
+        self
+    }
+
     pub(super) fn io(path: &Path, error: io::Error) -> Self {
         Self::Io {
             path: path.to_owned(),
@@ -63,6 +104,7 @@ impl ReadError {
         Self::File {
             path: path.to_owned(),
             message: message.into(),
+            remedy: None,
         }
     }
 

@@ -26,16 +26,17 @@
 //! `refractive_index`, `wavelength_um`, `wavelength_nm`, and
 //! - `phi_deg`: the view azimuth phi in degrees, 0 by default, for a table outside the plane of
 //!   incidence;
+//! - `source_azimuth_deg`: the azimuth of the source in degrees, 0 by default, from which phi is counted;
 //! - `psi_deg` and `columns`, as above.
 //!
 //! There is no standard for such tables: this is the common form of goniometers' spreadsheets. The
 //! files of the Black Lab have another form, see [`black_lab`](super::black_lab).
 
-use super::comments::{Comments, comment_of, number_of_key, stated_wavelength_um};
-use super::conversion::{BEYOND_HORIZON, Quantity, left_out};
-use super::error::ReadError;
+use super::comments::{Comments, SOURCE_AZIMUTH, comment_of, number_of_key, stated_wavelength_um};
+use super::conversion::{LeftOut, Quantity};
+use super::error::{ReadError, Remedy};
 use super::fields::Separator;
-use super::number::{Field, is_angle, is_reading, parse_number, was_not_taken};
+use super::number::{Field, is_angle, is_reading, parse_number};
 use super::options::ReadOptions;
 use super::reader::{Content, Reader};
 use super::text::{Text, head_lines};
@@ -56,6 +57,13 @@ const VIEW: &str = "view";
 ///
 /// The text is not such a table.
 pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements, ReadError> {
+    if let Some((name, role)) = options.columns.first() {
+        let message = format!(
+            "\"{name}={role}\": the columns of a table of incidence angles have no names; a line \
+             \"# columns: incidence\" or \"# columns: azimuth\" says what they are"
+        );
+        return Err(text.error(message).with_remedy(Some(Remedy::ColumnAngles)));
+    }
     let convention = options.convention(Convention::default());
     let mut comments = Comments::declared(&text, &options.declarations)?;
     let mut table: Option<Table> = None;
@@ -217,13 +225,8 @@ impl Table {
         };
         let theta_deg = text.number(number, VIEW, &field(0), "expected degrees", is_angle)?;
         let cell = |(i, column_deg): (usize, &f64)| {
-            let cell = field(i + 1);
-            if was_not_taken(cell.text) {
-                return Ok(None);
-            }
             let name = format!("of {column_deg} deg");
-            let reading = text.number(number, &name, &cell, "expected a reading", is_reading)?;
-            Ok(Some(reading).filter(|reading| self.missing != Some(*reading)))
+            text.reading(number, &name, &field(i + 1), self.missing)
         };
         let cells = self.columns_deg.iter().enumerate().map(cell);
         let cells = cells.collect::<Result<_, ReadError>>()?;
@@ -284,12 +287,14 @@ impl Table {
                  incidence\" or \"# columns: azimuth\" in the file"
                     .to_owned(),
             )
+            .with_remedy(Some(Remedy::ColumnAngles))
         })?;
         let number = |key, expected, accepts| {
             number_of_key(text, &comments.metadata, key, expected, accepts)
         };
         let wavelength_um = stated_wavelength_um(text, &comments.metadata)?;
         let phi_deg = number("phi_deg", "expected degrees", is_angle)?.unwrap_or(0.0);
+        let source_deg = number(SOURCE_AZIMUTH, "expected degrees", is_angle)?.unwrap_or(0.0);
         let expected = "expected degrees from 0 to below 90";
         let psi_deg = number("psi_deg", expected, |psi| (0.0..90.0).contains(&psi))?;
         if columns == Columns::Azimuths && psi_deg.is_none() {
@@ -297,10 +302,11 @@ impl Table {
                 "the columns are azimuths, and the incidence angle is not given: expected a line such as \
                  \"# psi_deg: 30\" in the file"
                     .to_owned(),
-            ));
+            )
+            .with_remedy(Some(Remedy::Incidence)));
         }
         let values = comments.values(Quantity::BRDF).map_err(problem)?;
-        let (mut not_taken, mut beyond) = (0, 0);
+        let mut left = LeftOut::default();
         let mut readings = Vec::new();
         for (theta_deg, cells) in &self.rows {
             for (&column_deg, cell) in self.columns_deg.iter().zip(cells) {
@@ -309,14 +315,14 @@ impl Table {
                     Columns::Azimuths => (psi_deg.unwrap_or(0.0), column_deg),
                 };
                 let Some(reading) = *cell else {
-                    not_taken += 1;
+                    left.not_taken += 1;
                     continue;
                 };
                 if !(0.0..90.0).contains(&psi_deg) || theta_deg.abs() >= 90.0 {
-                    beyond += 1;
+                    left.beyond += 1;
                     continue;
                 }
-                let (theta, phi) = convention.in_model(*theta_deg, phi_deg);
+                let (theta, phi) = convention.in_model(*theta_deg, phi_deg - source_deg);
                 let brdf = values.to_brdf(reading, theta);
                 if !is_reading(brdf) {
                     let message =
@@ -340,8 +346,7 @@ impl Table {
         if columns == Columns::Azimuths {
             conversions.push("the columns are azimuths".to_owned());
         }
-        conversions.extend(left_out(not_taken, "not taken (empty cells)"));
-        conversions.extend(left_out(beyond, BEYOND_HORIZON));
+        conversions.extend(left.notes());
         Ok(Measurements {
             source: text.path.display().to_string(),
             metadata: comments.metadata,
@@ -404,7 +409,7 @@ mod tests {
         assert_eq!(scan.refractive_index.unwrap().at(Some(0.63)), Some(1.5));
         assert_eq!(
             scan.conversions,
-            ["1 reading not taken (empty cells) is left out"]
+            ["1 reading not taken (no value) is left out"]
         );
     }
 
@@ -476,6 +481,27 @@ mod tests {
         ] {
             assert_eq!(cells(&scan(evident))[0].0, 10.0, "{evident}");
         }
+    }
+
+    #[test]
+    fn azimuths_are_counted_from_that_of_the_source() {
+        let scan = scan("# phi_deg: 210\n# source_azimuth_deg: 180\nt,10\n-5,1\n");
+        assert_eq!(scan.readings()[0].phi, 30_f64.to_radians());
+    }
+
+    #[test]
+    fn columns_without_names_cannot_be_renamed() {
+        let options = ReadOptions {
+            columns: vec![("a".to_owned(), "psi_deg".to_owned())],
+            ..ReadOptions::default()
+        };
+        let text = Text::new(Path::new("a.txt"), TWO.as_bytes()).unwrap();
+        let error = read(text, &options).unwrap_err();
+        assert!(
+            error.to_string().contains("\"a=psi_deg\": the columns"),
+            "{error}"
+        );
+        assert_eq!(error.remedy(), Some(Remedy::ColumnAngles));
     }
 
     #[test]

@@ -25,6 +25,6 @@ mod reader;
 mod text;
 pub mod zemax;
 
-pub use error::ReadError;
+pub use error::{ReadError, Remedy};
 pub use lazy_scan::LazyScan;
 pub use options::{DECLARED_KEYS, ReadOptions};

@@ -71,7 +71,11 @@ impl Reader {
     pub(super) fn read(&self, path: &Path, bytes: &[u8], options: &ReadOptions) -> Read {
         self.check_options(path, options)?;
         match self.content {
-            Content::Table(read) | Content::Text(read) => read(Text::new(path, bytes)?, options),
+            Content::Table(read) => read(Text::new(path, bytes)?, options),
+            // Files of these formats have nothing that could be declared.
+            Content::Text(read) => {
+                read(Text::new(path, bytes)?, options).map_err(|error| error.with_remedy(None))
+            }
             Content::Bytes(read) => read(path, bytes, options),
         }
     }

@@ -4,8 +4,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::error::ReadError;
-use super::number::{Field, parse_number};
+use super::error::{ReadError, Remedy};
+use super::number::{Field, is_reading, looks_missing, parse_number, was_not_taken};
 
 /// The longest line in bytes: a longer one is not a line of readings.
 pub(super) const MAX_LINE: usize = 65_536;
@@ -101,6 +101,7 @@ impl<'a> Text<'a> {
             path: self.path.to_owned(),
             line,
             message: message.into(),
+            remedy: None,
         }
     }
 
@@ -117,6 +118,7 @@ impl<'a> Text<'a> {
             column: column.to_owned(),
             value: quotable(field),
             message: message.into(),
+            remedy: None,
         }
     }
 
@@ -143,6 +145,39 @@ impl<'a> Text<'a> {
         };
         let message = format!("{problem}: {expected}");
         Err(self.value_error(line, column, field.text, message))
+    }
+
+    /// The reading in a field; `None` where none was taken: the field says so, or holds the number
+    /// `missing` that stands for it.
+    ///
+    /// # Errors
+    ///
+    /// The field is not a finite number, or one that programs write where no reading was taken and that
+    /// is not declared to be.
+    pub(super) fn reading(
+        &self,
+        line: u64,
+        column: &str,
+        field: &Field<'_>,
+        missing: Option<f64>,
+    ) -> Result<Option<f64>, ReadError> {
+        if was_not_taken(field.text) {
+            return Ok(None);
+        }
+        let expected = "expected a reading, or nan where none was taken";
+        let value = self.number(line, column, field, expected, is_reading)?;
+        if missing == Some(value) {
+            return Ok(None);
+        }
+        if looks_missing(value) {
+            let message = format!(
+                "looks like a reading that was not taken: expected nan in its place, or in a table a \
+                 line \"# missing: {value}\""
+            );
+            let error = self.value_error(line, column, field.text, message);
+            return Err(error.with_remedy(Some(Remedy::Missing)));
+        }
+        Ok(Some(value))
     }
 }
 

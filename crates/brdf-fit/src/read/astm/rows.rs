@@ -2,9 +2,9 @@
 
 use super::header::{Column, Header};
 use crate::read::angles::{AngleUnit, TwoDirections};
-use crate::read::conversion::{BEYOND_HORIZON, left_out};
+use crate::read::conversion::LeftOut;
 use crate::read::error::ReadError;
-use crate::read::number::{Field, is_angle, is_deviation, is_reading};
+use crate::read::number::{Field, is_angle, is_deviation};
 use crate::read::text::{Text, words};
 use crate::scan::{Convention, Format, Measurement, Measurements, Side};
 
@@ -12,8 +12,8 @@ use crate::scan::{Convention, Format, Measurement, Measurements, Side};
 #[derive(Default)]
 pub(super) struct Rows {
     pub(super) directions: Vec<TwoDirections>,
-    /// The values, row by row: one for each column of values.
-    values: Vec<f64>,
+    /// The values, row by row: one for each column of values, where one was taken.
+    values: Vec<Option<f64>>,
     /// The standard deviations of the rows; empty where the file has none.
     sigmas: Vec<Option<f64>>,
 }
@@ -47,9 +47,7 @@ impl Rows {
                     }
                 }
                 Column::Value(_) => {
-                    let value =
-                        text.number(number, name, &field, "expected a value", is_reading)?;
-                    self.values.push(value);
+                    self.values.push(text.reading(number, name, &field, None)?);
                 }
                 Column::Sigma => {
                     let expected = "expected 1/sr above 0";
@@ -116,11 +114,11 @@ impl Rows {
         let mut conversions = vec![about_unit, azimuth(convention)];
         conversions.extend(header.conversions.iter().cloned());
         conversions.extend(header.quantity.conversion());
-        let (readings, beyond) = self.readings(&header, unit, convention);
+        let (readings, left) = self.readings(&header, unit, convention);
         if readings.is_empty() {
             return Err(text.error("has no reading above the surface"));
         }
-        conversions.extend(left_out(beyond, BEYOND_HORIZON));
+        conversions.extend(left.notes());
         Ok(Measurements {
             source: text.path.display().to_string(),
             ignored_columns: header.unused(),
@@ -134,34 +132,40 @@ impl Rows {
         })
     }
 
-    /// The readings, and how many are left out because they are beyond the horizon.
+    /// The readings, and how many are left out.
     fn readings(
         &self,
         header: &Header,
         unit: AngleUnit,
         convention: Convention,
-    ) -> (Vec<Measurement>, usize) {
+    ) -> (Vec<Measurement>, LeftOut) {
         let wavelengths: Vec<Option<f64>> = header.wavelengths().collect();
         let rows = self.values.chunks(wavelengths.len().max(1));
         let sigmas = self.sigmas.iter().copied().chain(std::iter::repeat(None));
         let mut readings = Vec::with_capacity(self.values.len());
+        let mut left = LeftOut::default();
         for ((directions, values), sigma) in self.directions.iter().zip(rows).zip(sigmas) {
             let Some((psi, theta, phi)) = from_source(*directions, unit, convention).in_model(unit)
             else {
+                left.beyond += values.len();
                 continue;
             };
-            let reading = |(&value, &wavelength_um): (&f64, &Option<f64>)| Measurement {
-                wavelength_um,
-                psi,
-                theta,
-                phi,
-                brdf: header.quantity.to_brdf(value, theta),
-                sigma: sigma.map(|sigma| header.quantity.deviation(sigma, value, theta)),
-            };
-            readings.extend(values.iter().zip(&wavelengths).map(reading));
+            for (&value, &wavelength_um) in values.iter().zip(&wavelengths) {
+                let Some(value) = value else {
+                    left.not_taken += 1;
+                    continue;
+                };
+                readings.push(Measurement {
+                    wavelength_um,
+                    psi,
+                    theta,
+                    phi,
+                    brdf: header.quantity.to_brdf(value, theta),
+                    sigma: sigma.map(|sigma| header.quantity.deviation(sigma, value, theta)),
+                });
+            }
         }
-        let beyond = self.values.len() - readings.len();
-        (readings, beyond)
+        (readings, left)
     }
 }
 

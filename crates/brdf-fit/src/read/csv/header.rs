@@ -2,7 +2,7 @@
 
 use super::roles::Roles;
 use crate::read::comments::{Comments, comment_of};
-use crate::read::error::ReadError;
+use crate::read::error::{ReadError, Remedy};
 use crate::read::fields::Separator;
 use crate::read::names::Role;
 use crate::read::options::ReadOptions;
@@ -240,8 +240,7 @@ fn no_header(text: &Text<'_>, best: Option<&Header>) -> ReadError {
         return text.error(format!("has no header: {EXPECTED}{found}"));
     };
     let missing = header.missing().join(" and ");
-    let message = format!("no column for {missing}: {}", header.understood());
-    text.line_error(header.number, message)
+    header.unclear(text, &format!("no column for {missing}:"))
 }
 
 /// The line that names the columns.
@@ -295,8 +294,16 @@ impl Header {
             .collect()
     }
 
+    /// The error that the columns do not say what is needed: the problem, and what was understood of
+    /// each column.
+    pub(super) fn unclear(&self, text: &Text<'_>, problem: &str) -> ReadError {
+        let message = format!("{problem} {}", self.understood());
+        let error = text.line_error(self.number, message);
+        error.with_remedy(Some(Remedy::Columns))
+    }
+
     /// What was understood of each column, and how to say what it is.
-    pub(super) fn understood(&self) -> String {
+    fn understood(&self) -> String {
         let column = |column: &Column| match column.role {
             Some(role) => format!("\"{}\" is {}", column.name, role.in_words()),
             None => format!("\"{}\" is not known", column.name),

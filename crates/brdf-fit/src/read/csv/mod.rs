@@ -57,7 +57,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::comments::{Comments, SOURCE_AZIMUTH, comment_of, number_of_key, stated_wavelength_um};
-use super::conversion::{BEYOND_HORIZON, Kind, NOT_TAKEN, Quantity, left_out};
+use super::conversion::{Kind, Quantity};
 use super::error::ReadError;
 use super::names::{AngleForm, LengthUnit, Role};
 use super::number::is_angle;
@@ -226,11 +226,8 @@ fn reader(
         x.abs() < 90.0
     })?;
     if roles.psi.is_none() && psi_deg.is_none() {
-        let message = format!(
-            "no column for the incidence angle (psi_deg), and no line \"# psi_deg: 30\": {}",
-            header.understood()
-        );
-        return Err(of_header(message));
+        let problem = "no column for the incidence angle (psi_deg), and no line \"# psi_deg: 30\":";
+        return Err(header.unclear(text, problem));
     }
     let polarisation = match comments.metadata.get("polarisation") {
         None | Some("unpolarised" | "mean") => None,
@@ -303,15 +300,19 @@ fn check_found(
 ) -> Result<(), ReadError> {
     let problem = |message: String| Err(text.line_error(header.number, message));
     if found.readings.is_empty() {
-        return problem(match (found.beyond, found.not_taken) {
-            (0, 0) => "no readings follow the header".to_owned(),
-            (0, count) => format!("none of the {count} readings was taken: every value is blank"),
-            (count, _) => format!(
-                "all {count} readings are at or beyond 90 deg from the normal: are zenith angles and \
-                 azimuths exchanged? {}",
-                header.understood()
-            ),
-        });
+        return match (found.left.beyond, found.left.not_taken) {
+            (0, 0) => problem("no readings follow the header".to_owned()),
+            (0, count) => problem(format!(
+                "none of the {count} readings was taken: every value is blank"
+            )),
+            (count, _) => {
+                let problem = format!(
+                    "all {count} readings are at or beyond 90 deg from the normal: are zenith angles and \
+                     azimuths exchanged?"
+                );
+                Err(header.unclear(text, &problem))
+            }
+        };
     }
     let roles = &reader.roles;
     let zeniths = roles.psi.into_iter().chain([roles.theta]);
@@ -353,7 +354,9 @@ fn conversions(header: &Header, reader: &RowReader, found: &Found, skipped: usiz
             .readings
             .iter()
             .find_map(|reading| reading.wavelength_um);
-        all.extend(um.map(|um| format!("wavelengths are taken so that the first is {um} um")));
+        all.extend(um.map(|um| {
+            format!("the header states no unit of wavelength: the first one is read as {um} um")
+        }));
     }
     match (&reader.roles.readings, reader.polarisation) {
         (Readings::Ratio(..), _) => {
@@ -378,8 +381,7 @@ fn conversions(header: &Header, reader: &RowReader, found: &Found, skipped: usiz
             "{count} rows have a negative incidence angle: it is on the other side of the normal"
         ));
     }
-    all.extend(left_out(found.not_taken, NOT_TAKEN));
-    all.extend(left_out(found.beyond, BEYOND_HORIZON));
+    all.extend(found.left.notes());
     match skipped {
         0 => {}
         1 => all.push("1 line of text above the header is skipped".to_owned()),

@@ -6,12 +6,11 @@ use brdf_core::check_refractive_index;
 
 use super::header::Column;
 use super::roles::{AngleColumn, Readings, Roles};
-use crate::read::conversion::Values;
+use crate::read::conversion::{LeftOut, Values};
 use crate::read::error::ReadError;
 use crate::read::names::{AngleForm, LengthUnit};
 use crate::read::number::{
-    Field, is_angle, is_deviation, is_reading, is_wavelength, looks_missing, micrometres,
-    was_not_taken,
+    Field, is_angle, is_deviation, is_reading, is_wavelength, micrometres, was_not_taken,
 };
 use crate::read::text::Text;
 use crate::scan::{Convention, Measurement, RefractiveIndex};
@@ -45,8 +44,7 @@ pub(super) struct RowReader {
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) readings: Vec<Measurement>,
-    pub(super) not_taken: usize,
-    pub(super) beyond: usize,
+    pub(super) left: LeftOut,
     /// Rows with a negative incidence angle.
     pub(super) mirrored: usize,
     /// The largest absolute zenith angle that is read as degrees.
@@ -78,7 +76,7 @@ impl RowReader {
         let wavelength_um = self.wavelength(row)?;
         let directions = self.directions(row, found)?;
         let Some(directions) = directions else {
-            found.beyond += self.readings_in_a_row();
+            found.left.beyond += self.readings_in_a_row();
             return Ok(());
         };
         let (theta, phi) = self
@@ -86,7 +84,7 @@ impl RowReader {
             .in_model(directions.theta_deg, directions.phi_deg);
         let mut add = |column: usize, value: Option<f64>, wavelength_um, sigma: Option<f64>| {
             let Some(value) = value else {
-                found.not_taken += 1;
+                found.left.not_taken += 1;
                 return Ok(());
             };
             let brdf = self.values.to_brdf(value, theta);
@@ -105,13 +103,14 @@ impl RowReader {
             });
             Ok(())
         };
+        let reading = |column| row.reading(column, self.missing);
         match &self.roles.readings {
             Readings::One(column) => {
-                let value = self.value(row, *column)?;
+                let value = reading(*column)?;
                 add(*column, value, wavelength_um, self.sigma(row)?)
             }
             Readings::Polarised(first, second) => {
-                let (s, p) = (self.value(row, *first)?, self.value(row, *second)?);
+                let (s, p) = (reading(*first)?, reading(*second)?);
                 let value = match self.polarisation {
                     Some(0) => s,
                     Some(_) => p,
@@ -120,7 +119,7 @@ impl RowReader {
                 add(*first, value, wavelength_um, None)
             }
             Readings::Ratio(column, reference) => {
-                let signal = self.value(row, *column)?;
+                let signal = reading(*column)?;
                 let expected = "expected the signal of the white standard, above 0";
                 let reference = row.value(*reference, expected, |x| x > 0.0)?;
                 let ratio = signal.map(|signal| signal / reference);
@@ -128,9 +127,8 @@ impl RowReader {
             }
             Readings::Channels(channels) => {
                 let mut channels = channels.iter();
-                channels.try_for_each(|(column, um)| {
-                    add(*column, self.value(row, *column)?, Some(*um), None)
-                })
+                channels
+                    .try_for_each(|(column, um)| add(*column, reading(*column)?, Some(*um), None))
             }
         }
     }
@@ -215,24 +213,6 @@ impl RowReader {
         }))
     }
 
-    /// The reading in a column; `None` where it was not taken.
-    fn value(&self, row: &Row<'_>, column: usize) -> Result<Option<f64>, ReadError> {
-        if was_not_taken(row.fields.get(column).copied().unwrap_or_default()) {
-            return Ok(None);
-        }
-        let value = row.value(column, "expected a reading", is_reading)?;
-        if self.missing == Some(value) {
-            return Ok(None);
-        }
-        if looks_missing(value) {
-            let message = format!(
-                "looks like a reading that was not taken: if it is one, say so by a line \"# missing: {value}\""
-            );
-            return Err(row.error(column, message));
-        }
-        Ok(Some(value))
-    }
-
     fn sigma(&self, row: &Row<'_>) -> Result<Option<f64>, ReadError> {
         // The standard deviation may be blank in single rows.
         let column = self
@@ -289,18 +269,24 @@ impl Row<'_> {
         expected: &str,
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
-        let field = Field {
+        let name = &self.columns[column].name;
+        self.text
+            .number(self.line, name, &self.field(column), expected, accepts)
+    }
+
+    /// The reading in a column; `None` where it was not taken.
+    fn reading(&self, column: usize, missing: Option<f64>) -> Result<Option<f64>, ReadError> {
+        let name = &self.columns[column].name;
+        self.text
+            .reading(self.line, name, &self.field(column), missing)
+    }
+
+    fn field(&self, column: usize) -> Field<'_> {
+        Field {
             text: self.fields.get(column).copied().unwrap_or_default(),
             // A comma that does not separate fields is a decimal comma.
             decimal_comma: true,
-        };
-        self.text.number(
-            self.line,
-            &self.columns[column].name,
-            &field,
-            expected,
-            accepts,
-        )
+        }
     }
 
     fn error(&self, column: usize, message: impl Into<String>) -> ReadError {

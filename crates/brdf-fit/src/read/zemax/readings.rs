@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::sections::{Block, Header};
 use super::specular::from_specular;
-use crate::read::conversion::{BEYOND_HORIZON, left_out};
+use crate::read::conversion::{LeftOut, left_out};
 use crate::scan::Measurement;
 
 /// View zenith angles from here on are at the horizon: within the rounding of pi/2, in radians.
@@ -15,7 +15,7 @@ const HORIZON: f64 = FRAC_PI_2 - 1e-9;
 pub(super) struct Readings {
     wavelength_um: Option<f64>,
     pub(super) kept: Vec<Measurement>,
-    below: usize,
+    left: LeftOut,
     zeros: usize,
     repeated: usize,
 }
@@ -36,7 +36,7 @@ impl Readings {
         let first = block.values.first().copied();
         for (i, &azimuth_deg) in header.azimuths.iter().enumerate() {
             let is_specular_again =
-                |radial_deg: f64, value: f64| radial_deg == 0.0 && i > 0 && Some(value) == first;
+                |radial_deg: f64, value| radial_deg == 0.0 && i > 0 && Some(value) == first;
             let turn = azimuth_deg.rem_euclid(360.0);
             let same = header.azimuths[..i]
                 .iter()
@@ -52,23 +52,21 @@ impl Readings {
         }
     }
 
-    fn add_value(&mut self, psi_deg: f64, azimuth_deg: f64, radial_deg: f64, value: f64) {
+    fn add_value(&mut self, psi_deg: f64, azimuth_deg: f64, radial_deg: f64, value: Option<f64>) {
         let psi = psi_deg.to_radians();
         let (theta, phi) = from_specular(psi, azimuth_deg.to_radians(), radial_deg.to_radians());
-        let reading = Measurement {
-            wavelength_um: self.wavelength_um,
-            psi,
-            theta,
-            phi,
-            brdf: value,
-            sigma: None,
-        };
-        if psi_deg >= 90.0 || theta >= HORIZON {
-            self.below += 1;
-        } else if value == 0.0 {
-            self.zeros += 1;
-        } else {
-            self.kept.push(reading);
+        match value {
+            _ if psi_deg >= 90.0 || theta >= HORIZON => self.left.beyond += 1,
+            None => self.left.not_taken += 1,
+            Some(0.0) => self.zeros += 1,
+            Some(brdf) => self.kept.push(Measurement {
+                wavelength_um: self.wavelength_um,
+                psi,
+                theta,
+                phi,
+                brdf,
+                sigma: None,
+            }),
         }
     }
 
@@ -86,7 +84,7 @@ impl Readings {
                 "{rotations} rotations of the sample are read as one isotropic sample"
             ));
         }
-        conversions.extend(left_out(self.below, BEYOND_HORIZON));
+        conversions.extend(self.left.notes());
         conversions.extend(left_out(
             self.zeros,
             "of exactly 0, the format's mark for a value that was not measured,",

@@ -20,7 +20,7 @@ pub(super) struct Header {
 /// The values of one incidence: for each azimuth those of all radial angles.
 pub(super) struct Block {
     pub(super) psi_deg: f64,
-    pub(super) values: Vec<f64>,
+    pub(super) values: Vec<Option<f64>>,
 }
 
 impl Header {
@@ -111,11 +111,11 @@ impl Header {
 
     /// Memory is allocated for the values in the file, not for the counts of the header, which may
     /// be any.
-    fn read_values(&self, tokens: &mut Tokens<'_>) -> Result<Vec<f64>, ReadError> {
+    fn read_values(&self, tokens: &mut Tokens<'_>) -> Result<Vec<Option<f64>>, ReadError> {
         let mut values = Vec::new();
         for _ in &self.azimuths {
             for _ in &self.radials {
-                values.push(tokens.number("BRDF", "expected a value in 1/sr", |_| true)?);
+                values.push(tokens.reading("BRDF")?);
             }
         }
         Ok(values)

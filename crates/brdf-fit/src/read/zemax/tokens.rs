@@ -101,6 +101,17 @@ impl<'a> Tokens<'a> {
             .number(self.line, name, &Field::plain(word), expected, accepts)
     }
 
+    /// Takes the next word, which must be a reading, or say that none was taken.
+    ///
+    /// # Errors
+    ///
+    /// As [`Text::reading`].
+    pub(super) fn reading(&mut self, name: &str) -> Result<Option<f64>, ReadError> {
+        let word = self.next(name)?;
+        self.text
+            .reading(self.line, name, &Field::plain(word), None)
+    }
+
     /// Takes a count and as many angles in degrees. Memory is allocated for the angles in the file,
     /// not for the count.
     ///

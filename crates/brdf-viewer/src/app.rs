@@ -1,5 +1,6 @@
 //! The application: each frame takes events, applies intents, draws panels and starts jobs.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 
 use eframe::egui;
@@ -126,17 +127,27 @@ impl Viewer {
     /// from them are drawn below, so that both belong to the same frame.
     fn show_parameters(&mut self, ui: &mut egui::Ui) {
         let mut changed = false;
-        panels::parameters::show_panel(ui, |ui| {
-            let mut intents = Vec::new();
-            panels::parameters::show(ui, &self.state, &mut intents);
-            changed = !intents.is_empty();
-            self.apply(std::mem::take(&mut intents));
-            self.state.refresh();
-            panels::parameters::show_outcome(ui, &self.state);
-            ui.separator();
-            panels::fit::show(ui, &self.state, &mut intents);
-            self.apply(intents);
-        });
+        let state = RefCell::new(&mut self.state);
+        panels::parameters::show_panel(
+            ui,
+            |ui| {
+                let mut state = state.borrow_mut();
+                let mut intents = Vec::new();
+                panels::result::show(ui, &state, &mut intents);
+                state.apply_all(std::mem::take(&mut intents));
+                panels::parameters::show(ui, &state, &mut intents);
+                changed = !intents.is_empty();
+                state.apply_all(intents);
+                state.refresh();
+                panels::parameters::show_reflectance(ui, &state);
+            },
+            |ui| {
+                let mut state = state.borrow_mut();
+                let mut intents = Vec::new();
+                panels::fit::show(ui, &state, &mut intents);
+                state.apply_all(intents);
+            },
+        );
         // The results were drawn before, from the old parameters: the frame is drawn again.
         let interface = &self.state.interface;
         if changed && interface.results && interface.tab.shows_current_parameters() {
@@ -145,9 +156,7 @@ impl Viewer {
     }
 
     fn apply(&mut self, intents: Vec<Intent>) {
-        for intent in intents {
-            self.state.apply(intent);
-        }
+        self.state.apply_all(intents);
     }
 
     fn carry_out_effects(&mut self, ctx: &egui::Context) {

@@ -8,8 +8,8 @@ use brdf_fit::{Model, Parameter};
 
 use crate::output_kind::OutputKind;
 use crate::state::fit_settings::{FitSettings, Scope, Stages};
-use crate::state::id::SampleId;
-use crate::state::interface::ResultTab;
+use crate::state::id::{SampleId, ScanId};
+use crate::state::interface::{ResidualKind, ResultTab};
 use crate::state::parameters::EditedParameters;
 
 /// A request of the user, which `State::apply` carries out.
@@ -33,6 +33,22 @@ pub enum Intent {
     Wavelength(SampleId, usize),
     /// Show or hide one incidence of a sample, by its index.
     ShowIncidence(SampleId, usize, bool),
+    /// Use the readings of one incidence of a sample in the fit, or leave them out.
+    UseIncidence(SampleId, usize, bool),
+    /// Leave readings of a scan out of the fit, or use them again if all of them are left out.
+    ToggleReadings(ScanId, Vec<usize>),
+    /// Use all readings of a scan.
+    UseAllReadings(ScanId),
+    /// Take a model that the last fit of the active scan was compared with, and fit it.
+    UseModel(Model),
+    /// Show or hide a model that the last fit of the active scan was compared with.
+    ToggleModel(Model),
+    /// Remove a theory that stays in the plot, by its index.
+    Unpin(usize),
+    /// Choose the parameter that is plotted against the wavelength.
+    PlotParameter(Parameter),
+    /// Choose how residuals are expressed.
+    Residuals(ResidualKind),
     /// Show or hide all incidences of a sample.
     ShowAllIncidences(SampleId, bool),
     /// Set the angular convention in which files are read from now on.
@@ -84,6 +100,12 @@ pub enum Command {
     CopyParameters,
     /// Quit the program.
     Quit,
+    /// Toggle whether the pointer chooses readings in the plot.
+    ChooseReadings,
+    /// Keep the current theory in the plot.
+    Pin,
+    /// Remove all theories that stay in the plot.
+    UnpinAll,
     /// Undo the last change of the parameters.
     Undo,
     /// Redo the change that was undone last.

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use brdf_fit::Convention;
 use brdf_fit::Step;
 use brdf_fit::plot::View;
+use brdf_fit::read::LazyScan;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements};
 
@@ -21,8 +22,8 @@ use crate::state::sample::{Opened, Sample};
 pub enum Job {
     /// Read or write a file.
     File(FileJob),
-    /// Fit scans one after the other, and analyse each to a depth.
-    Fit(Vec<FitJob>, Depth),
+    /// Fit scans one after the other.
+    Fit(FitJobs),
 }
 
 /// A job that reads or writes a file.
@@ -37,13 +38,28 @@ pub enum FileJob {
     Write(PathBuf, Output),
 }
 
+/// Fits of scans, one after the other.
+#[derive(Debug)]
+pub struct FitJobs {
+    /// The number of the run, which its end states.
+    pub run: u64,
+    /// The fits.
+    pub fits: Vec<FitJob>,
+    /// The depth of the analysis of each.
+    pub depth: Depth,
+}
+
 /// The fit of one scan.
 #[derive(Debug)]
 pub struct FitJob {
     /// The scan.
     pub scan: ScanId,
-    /// Its readings.
+    /// The readings that are used.
     pub measurements: Arc<Measurements>,
+    /// The indices of the readings of the scan that are not.
+    pub left_out: Vec<usize>,
+    /// The channel of a table of which all bins are fitted, in place of `measurements`.
+    pub table: Option<LazyScan>,
     /// The options of the fit.
     pub options: FitOptions,
     /// Cancels the fit.
@@ -106,12 +122,14 @@ pub enum Event {
     OutputChosen(OutputKind, PathBuf),
     /// A fit made a step.
     Step(ScanId, Step),
+    /// The parameters of a fit are known; its analysis follows.
+    Found(ScanId, Box<Report>),
     /// A fit has ended with a report, which contains the fit or its error.
     Fitted(ScanId, Box<Report>),
     /// A fit was ended by an internal error, and the error message.
     FitAborted(ScanId, String),
-    /// All fits have ended or were cancelled.
-    FitsEnded,
+    /// All fits of a run, by its number, have ended or were cancelled.
+    FitsEnded(u64),
     /// A file was written.
     Written(PathBuf),
     /// A file could not be written, and the error message.

@@ -103,7 +103,12 @@ enum Arrangement {
 #[derive(Clone, Copy, ValueEnum)]
 enum Results {
     None,
-    Tables,
+    Summary,
+    Models,
+    Wavelengths,
+    Residuals,
+    #[value(alias = "tables")]
+    Report,
     Convergence,
     Profile,
     Reflectance,
@@ -281,7 +286,11 @@ fn set_view(viewer: &mut Viewer, arguments: &Arguments) {
     if let Some(results) = arguments.results {
         state.interface.results = !matches!(results, Results::None);
         let tab = match results {
-            Results::None | Results::Tables => ResultTab::Tables,
+            Results::None | Results::Summary => ResultTab::Summary,
+            Results::Models => ResultTab::Models,
+            Results::Wavelengths => ResultTab::Wavelengths,
+            Results::Residuals => ResultTab::Residuals,
+            Results::Report => ResultTab::Report,
             Results::Convergence => ResultTab::Convergence,
             Results::Profile => ResultTab::Profile,
             Results::Reflectance => ResultTab::Reflectance,

@@ -1,5 +1,6 @@
 //! The dark and the light theme, and the colours of samples in each.
 
+use brdf_fit::Quality;
 use brdf_fit::plot::Ground;
 use egui::{Color32, Context, ThemePreference};
 
@@ -43,6 +44,19 @@ pub fn family_colour(family: usize, ground: Ground) -> Color32 {
 /// One of two colours for curves that belong to no sample.
 pub fn series_colour(i: usize, ground: Ground) -> Color32 {
     colour(None, i, 2, ground)
+}
+
+/// The colour of a quality: green, amber or red, of which the lightness differs as well.
+pub fn quality_colour(quality: Quality, ground: Ground) -> Color32 {
+    let (light, dark) = match quality {
+        Quality::Good => ([0x1b, 0x7f, 0x3b], [0x5f, 0xc9, 0x7e]),
+        Quality::Fair => ([0xa8, 0x62, 0x00], [0xe8, 0xab, 0x3f]),
+        Quality::Poor => ([0xb7, 0x1c, 0x1c], [0xff, 0x80, 0x76]),
+    };
+    rgb(match ground {
+        Ground::Light => light,
+        Ground::Dark => dark,
+    })
 }
 
 fn rgb([r, g, b]: [u8; 3]) -> Color32 {

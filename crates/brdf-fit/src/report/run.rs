@@ -52,8 +52,12 @@ pub struct Report {
     /// The model requested or, with [`ModelChoice::Auto`], chosen.
     #[serde(default)]
     pub model: Model,
-    /// Number of readings at this wavelength.
+    /// Number of readings at this wavelength, without those that are left out.
     pub readings: usize,
+    /// The indices of the readings at this wavelength that the user has left out, from 0 in the order of
+    /// the file: see [`Measurements::without`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<usize>,
     /// The fit; `None` if it failed.
     pub fit: Option<Fit>,
     /// Message of the error that prevented or interrupted the fit or its assessment.
@@ -140,6 +144,7 @@ impl Report {
             conversions: measurements.conversions.clone(),
             wavelength_um: measurements.wavelengths().first().copied().flatten(),
             readings: measurements.readings().len(),
+            left_out: Vec::new(),
             model: options.model,
             warnings: Vec::new(),
             fit: None,

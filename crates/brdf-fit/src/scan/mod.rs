@@ -10,7 +10,7 @@ pub use refractive_index::RefractiveIndex;
 pub(crate) use refractive_index::WAVELENGTH_TOLERANCE;
 
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use brdf_core::{Geometry, GeometryError};
@@ -389,6 +389,22 @@ impl Measurements {
         let mut kept: Vec<usize> = chosen.flat_map(|i| i.readings.iter().copied()).collect();
         kept.sort_unstable();
         self.kept(kept)
+    }
+
+    /// The measurements without the readings of the given indices, which the user leaves out; the number
+    /// is reported in [`conversions`](Self::conversions).
+    #[must_use]
+    pub fn without(&self, left_out: &[usize]) -> Self {
+        let left_out: HashSet<usize> = left_out.iter().copied().collect();
+        let mut used = self.kept((0..self.readings.len()).filter(|i| !left_out.contains(i)));
+        let count = self.readings.len() - used.readings.len();
+        if count > 0 {
+            let verb = if count == 1 { "is" } else { "are" };
+            let readings = counted(count, "reading");
+            used.conversions
+                .push(format!("{readings} {verb} left out by choice"));
+        }
+        used
     }
 
     /// The readings with the given indices, with the metadata of the file.

@@ -2,7 +2,10 @@
 
 use brdf_fit::Loss;
 use brdf_fit::Method;
-use egui::{Button, CollapsingHeader, ComboBox, DragValue, Grid, ProgressBar, Ui};
+use brdf_fit::Phase;
+use egui::{
+    Button, CollapsingHeader, ComboBox, DragValue, Grid, ProgressBar, RichText, Role, Ui, vec2,
+};
 
 use crate::intent::{Command, Intent};
 use crate::state::State;
@@ -12,19 +15,17 @@ use crate::widgets::{choose, named};
 
 /// Draws the section of the fit.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
-    ui.strong("Fit");
     let mut settings = state.fit_settings.clone();
-    ui.horizontal(|ui| {
-        ui.label("Start from");
-        ui.radio_value(&mut settings.start, Start::Paper, "paper's values");
-        ui.radio_value(&mut settings.start, Start::Current, "current values");
-    });
+    ui.add_space(2.0);
     show_buttons(ui, state, intents);
-    if let Some(run) = &state.fit_run {
-        if run.is_running() {
-            show_progress(ui, run, intents);
-        } else {
+    match &state.fit_run {
+        Some(run) if run.is_running() => show_progress(ui, run, intents),
+        Some(run) => {
             ui.label(result_text(run));
+        }
+        // The height does not depend on whether there was a fit.
+        None => {
+            ui.label("");
         }
     }
     CollapsingHeader::new("Fit settings")
@@ -38,17 +39,30 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 fn show_buttons(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.horizontal(|ui| {
         let enabled = state.is_enabled(Command::Fit);
-        for (name, stages) in [
-            ("Stage 1", Stages::First),
-            ("Stage 2", Stages::Second),
-            ("Both stages", Stages::Both),
+        let text = RichText::new("Fit").strong().size(16.0);
+        let button = ui.add_enabled(enabled, Button::new(text).min_size(vec2(90.0, 28.0)));
+        let button = named(button, Role::Button, "fit both stages");
+        if button
+            .on_hover_text("Fit this scan in both stages")
+            .clicked()
+        {
+            intents.push(Intent::Fit(Stages::Both, Scope::Wavelength));
+        }
+        for (name, stages, hint) in [
+            (
+                "Stage 1",
+                Stages::First,
+                "Fit the incidences of stage 1 alone",
+            ),
+            ("Stage 2", Stages::Second, "Fit all incidences at once"),
         ] {
-            if ui.add_enabled(enabled, Button::new(name)).clicked() {
+            let button = ui.add_enabled(enabled, Button::new(name).small());
+            if button.on_hover_text(hint).clicked() {
                 intents.push(Intent::Fit(stages, Scope::Wavelength));
             }
         }
         let enabled = state.is_enabled(Command::FitAll);
-        let all = ui.add_enabled(enabled, Button::new("Fit all"));
+        let all = ui.add_enabled(enabled, Button::new("Fit all").small());
         if all.on_hover_text(Command::FitAll.name()).clicked() {
             intents.push(Intent::Command(Command::FitAll));
         }
@@ -71,17 +85,36 @@ fn show_progress(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
             intents.push(Intent::Command(Command::Cancel));
         }
         let (ended, count) = (run.ended_count(), run.fit_count());
-        let phase = run
-            .phase
-            .map_or_else(String::new, |phase| phase.to_string());
-        let iteration = run.points.last().map_or(0, |point| point.iteration);
-        let text = format!("{ended} of {count}: {phase}, iteration {iteration}");
+        let phase = run.phase.map_or("", phase_name);
+        let text = match count {
+            1 => phase.to_owned(),
+            _ => format!("{ended} of {count}: {phase}"),
+        };
         let fraction = ended as f32 / count.max(1) as f32;
         ui.add(ProgressBar::new(fraction).text(text));
     });
 }
 
+/// What a phase of a fit does.
+fn phase_name(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Stage1 => "fitting stage 1",
+        Phase::Stage2 => "fitting stage 2",
+        Phase::GlobalCheck => "searching all widths",
+        Phase::Relative => "fitting relative errors",
+        Phase::Robust => "fitting without outliers",
+        Phase::Energy => "conserving energy",
+        Phase::Uncertainty => "intervals",
+        Phase::Assessment => "comparing models",
+    }
+}
+
 fn show_settings(ui: &mut Ui, settings: &mut FitSettings) {
+    ui.horizontal(|ui| {
+        ui.label("Start from");
+        ui.radio_value(&mut settings.start, Start::Paper, "paper's values");
+        ui.radio_value(&mut settings.start, Start::Current, "current values");
+    });
     Grid::new("settings")
         .num_columns(2)
         .spacing([8.0, 4.0])
@@ -98,6 +131,7 @@ fn show_settings(ui: &mut Ui, settings: &mut FitSettings) {
             show_energy(ui, settings);
         });
     ui.checkbox(&mut settings.compare_models, "Also fit GGX and Beckmann");
+    ui.checkbox(&mut settings.on_opening, "Fit scans when they are opened");
 }
 
 fn show_method(ui: &mut Ui, name: &str, method: &mut Method) {
@@ -108,7 +142,7 @@ fn show_method(ui: &mut Ui, name: &str, method: &mut Method) {
 fn show_weights(ui: &mut Ui, weights: &mut ReadingWeights) {
     let name = |weights: &ReadingWeights| match weights {
         ReadingWeights::None => "none".to_owned(),
-        ReadingWeights::Sigma => "1/sigma²".to_owned(),
+        ReadingWeights::Sigma => "1/σ²".to_owned(),
         ReadingWeights::Relative => "1/model²".to_owned(),
         ReadingWeights::SolidAngle => "solid angle".to_owned(),
     };

@@ -1,11 +1,11 @@
-//! The panel at the right: the model with its parameters, and E and the reflectances that follow
-//! from them.
+//! The panel at the right: the model with its parameters, and the reflectances that follow from
+//! them.
 
 use brdf_core::N_DOMAIN;
 use brdf_fit::format::digits;
 use brdf_fit::{Model, Parameter};
 use egui::{
-    ComboBox, DragValue, Grid, Id, Panel, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
+    ComboBox, DragValue, Id, Panel, RichText, Role, ScrollArea, Sense, Slider, SliderClamping, Ui,
 };
 
 use crate::intent::{Command, Intent};
@@ -13,23 +13,23 @@ use crate::plot::ticks::round_up;
 use crate::state::State;
 use crate::state::fit_settings::Scope;
 use crate::state::parameters::EditedParameters;
-use crate::state::sample::Sample;
+use crate::state::sample::{Sample, Scan};
 use crate::widgets::{choose, named};
 
-/// Draws the panel around its sections: [`show`], [`show_outcome`] and [`fit`](super::fit).
-pub fn show_panel(ui: &mut Ui, sections: impl FnOnce(&mut Ui)) {
+/// Draws the panel: the card of the result and the model scroll, the buttons of the fit stay below.
+pub fn show_panel(ui: &mut Ui, above: impl FnOnce(&mut Ui), fit: impl FnOnce(&mut Ui)) {
     let panel = Panel::right("parameters")
         .default_size(325.0)
         .size_range(300.0..=460.0);
     panel.show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, sections);
+        Panel::bottom("fit").resizable(false).show(ui, fit);
+        ScrollArea::vertical().auto_shrink(false).show(ui, above);
     });
 }
 
 /// Draws the model and its parameters.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     ui.add_space(4.0);
-    ui.strong("Model");
     let Some(sample) = state.active_sample() else {
         ui.label("No sample is open.");
         return;
@@ -37,15 +37,11 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     show_model(ui, sample, intents);
     let scan = sample.scan();
     let fitted = scan.fitted_parameters();
-    Grid::new("parameters")
-        .num_columns(5)
-        .spacing([6.0, 5.0])
-        .show(ui, |ui| {
-            for parameter in scan.parameters.model_parameters() {
-                show_parameter(ui, parameter, &scan.parameters, &fitted, intents);
-                ui.end_row();
-            }
+    for parameter in scan.parameters.model_parameters() {
+        ui.push_id(parameter as u8, |ui| {
+            show_parameter(ui, parameter, scan, &fitted, intents);
         });
+    }
     show_buttons(ui, state, intents);
 }
 
@@ -89,19 +85,53 @@ fn show_buttons(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     });
 }
 
-/// A row: label, slider, number box, reset button and check box.
+/// Two lines: the name with the estimate; slider, number box, reset button and check box.
 fn show_parameter(
     ui: &mut Ui,
     parameter: Parameter,
+    scan: &Scan,
+    fitted: &EditedParameters,
+    intents: &mut Vec<Intent>,
+) {
+    let label = show_name(ui, parameter, scan);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 6.0;
+        show_controls(ui, parameter, &label, &scan.parameters, fitted, intents);
+    });
+}
+
+/// The name of a parameter, and what the data say of it where it is as fitted.
+fn show_name(ui: &mut Ui, parameter: Parameter, scan: &Scan) -> egui::Response {
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        let name = RichText::new(parameter.to_string()).strong();
+        let label = ui.add(egui::Label::new(name).sense(Sense::click()));
+        ui.label(format!("{}:", title(parameter)));
+        let uncertainty = scan
+            .current_fit()
+            .and_then(|report| report.uncertainty.as_ref());
+        let estimate = uncertainty.and_then(|uncertainty| uncertainty.estimate(parameter));
+        if let Some(estimate) = estimate {
+            let hint = "The fitted value, and the interval of 95 %";
+            ui.label(estimate.to_string()).on_hover_text(hint);
+        } else {
+            ui.label(digits(parameter.of(&scan.parameters.values)));
+        }
+        label.on_hover_text(meaning(parameter))
+    })
+    .inner
+}
+
+fn show_controls(
+    ui: &mut Ui,
+    parameter: Parameter,
+    label: &egui::Response,
     current: &EditedParameters,
     fitted: &EditedParameters,
     intents: &mut Vec<Intent>,
 ) {
     let value = parameter.of(&current.values);
     let reset = parameter.of(&fitted.values);
-    let label = ui.add(egui::Label::new(parameter.to_string()).sense(Sense::click()));
-    let label = label.on_hover_text(meaning(parameter));
-
     let mut slider_value = value;
     let slider = slider(parameter, &mut slider_value, reset).show_value(false);
     let slider = ui.add(slider).labelled_by(label.id);
@@ -160,13 +190,34 @@ fn show_fix(
     }
 }
 
-fn meaning(parameter: Parameter) -> &'static str {
+fn title(parameter: Parameter) -> &'static str {
     match parameter {
         Parameter::K2 => "specular weight",
         Parameter::Kd => "diffuse weight",
-        Parameter::K1 => "width of the facet distribution",
+        Parameter::K1 => "facet width",
         Parameter::N => "refractive index",
-        Parameter::P => "exponent of the facet distribution",
+        Parameter::P => "facet exponent",
+    }
+}
+
+/// What a parameter means for the surface.
+fn meaning(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::K2 => "More specular weight: the facets of the surface mirror more light.",
+        Parameter::Kd => {
+            "More diffuse weight: more light comes back from below the surface, in all directions. \
+             kD is the reflectance of this part."
+        }
+        Parameter::K1 => {
+            "Wider facets spread the lobe: a small width is a glossy surface, a large one a matt one."
+        }
+        Parameter::N => {
+            "A larger refractive index mirrors more light, most of all far from grazing incidence."
+        }
+        Parameter::P => {
+            "The exponent shapes the lobe: 1 is the shape of the paper, other values change its \
+             peak and its tails."
+        }
     }
 }
 
@@ -211,23 +262,12 @@ fn number_box(ui: &mut Ui, parameter: Parameter, value: &mut f64) -> egui::Respo
     response
 }
 
-/// Draws E and the reflectances of the current parameters.
-pub fn show_outcome(ui: &mut Ui, state: &State) {
+/// Draws the reflectances of the current parameters.
+pub fn show_reflectance(ui: &mut Ui, state: &State) {
     let Some(sample) = state.active_sample() else {
         return;
     };
-    let id = sample.scan_id();
-    ui.add_space(4.0);
-    match state.derived.errors(id) {
-        Some(Ok(errors)) => {
-            ui.strong(format!("E = {} %", digits(errors.e_percent)));
-        }
-        Some(Err(reason)) => {
-            ui.label(format!("E is not available: {reason}"));
-        }
-        None => {}
-    }
-    let rho = state.derived.reflectance(id);
+    let rho = state.derived.reflectance(sample.scan_id());
     let values: Vec<String> = rho
         .iter()
         .filter(|[psi_deg, _]| [0.0, 45.0, 60.0, 85.0].contains(psi_deg))

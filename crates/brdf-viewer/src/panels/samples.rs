@@ -1,15 +1,17 @@
-//! The panel at the left: the samples with their incidences, colours and errors.
+//! The panel at the left: the samples with their colours and quality, and the wavelengths and
+//! incidences of the active one.
 
-use brdf_fit::format::{counted, digits};
+use brdf_fit::format::counted;
 use brdf_fit::plot::mark;
-use egui::{Color32, ComboBox, Grid, Panel, RichText, Role, ScrollArea, TextStyle, Ui, vec2};
+use egui::{Color32, Panel, RichText, Role, ScrollArea, TextStyle, Ui, vec2};
 
+use super::{incidences, result, wavelengths};
 use crate::intent::Intent;
 use crate::plot::items::mark_at;
 use crate::state::State;
 use crate::state::sample::Sample;
 use crate::theme;
-use crate::widgets::{degrees, named};
+use crate::widgets::{named, quality_mark};
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -46,6 +48,7 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
             if button.on_hover_text(close).clicked() {
                 intents.push(Intent::Close(sample.id));
             }
+            show_quality(ui, state, sample);
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 show_key(ui, state, sample);
                 show_name(ui, sample, active, intents);
@@ -54,6 +57,15 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
     });
     if active {
         ui.indent("scan", |ui| show_scan(ui, state, sample, intents));
+    }
+}
+
+/// The mark of how well the model describes a sample, at the wavelength that is shown.
+fn show_quality(ui: &mut Ui, state: &State, sample: &Sample) {
+    if let Some(quality) = result::quality(state, sample) {
+        let colour = theme::quality_colour(quality, theme::ground(ui.ctx()));
+        let mark = RichText::new(quality_mark(quality)).color(colour).strong();
+        ui.label(mark).on_hover_text(quality.to_string());
     }
 }
 
@@ -109,84 +121,21 @@ fn elided(ui: &Ui, name: &str, width: f32) -> String {
 }
 
 fn show_scan(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {
-    show_wavelengths(ui, sample, intents);
-    ui.label(counted(sample.scan().reading_count(), "reading"));
-    ui.horizontal(|ui| {
-        ui.label("Incidence psi");
-        for (name, label, visible) in [
-            ("all", "show all incidences", true),
-            ("none", "hide all incidences", false),
-        ] {
-            let button = named(ui.small_button(name), Role::Button, label);
-            if button.clicked() {
-                intents.push(Intent::ShowAllIncidences(sample.id, visible));
-            }
-        }
-    });
-    Grid::new("incidences")
-        .num_columns(3)
-        .spacing([10.0, 3.0])
-        .show(ui, |ui| show_incidences(ui, state, sample, intents));
-    ui.add_space(6.0);
-}
-
-/// The rows of the incidences: a check box, the number of readings, and E in percent.
-fn show_incidences(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {
+    wavelengths::show(ui, sample, intents);
     let scan = sample.scan();
-    if scan.reading_count() > 0 {
-        ui.weak("psi");
-        ui.weak("readings");
-        ui.weak("E %");
-        ui.end_row();
+    let left_out = scan.left_out().len();
+    if left_out == 0 {
+        ui.label(counted(scan.reading_count(), "reading"));
+    } else {
+        ui.horizontal(|ui| {
+            let (used, all) = (scan.used_count(), counted(scan.reading_count(), "reading"));
+            ui.label(format!("{used} of {all} used"));
+            let button = named(ui.small_button("use all"), Role::Button, "use all readings");
+            if button.clicked() {
+                intents.push(Intent::UseAllReadings(sample.scan_id()));
+            }
+        });
     }
-    let errors = state.derived.errors(sample.scan_id()).and_then(Result::ok);
-    let ground = theme::ground(ui.ctx());
-    let count = scan.incidences.iter().filter(|i| i.visible).count();
-    let mut visible_before = 0;
-    for (i, incidence) in scan.incidences.iter().enumerate() {
-        let colour = if incidence.visible {
-            visible_before += 1;
-            let family = state.family_of(sample);
-            theme::colour(family, visible_before - 1, count, ground)
-        } else {
-            ui.visuals().weak_text_color()
-        };
-        let mut visible = incidence.visible;
-        let text = RichText::new(degrees(incidence.psi)).color(colour).strong();
-        if ui.checkbox(&mut visible, text).changed() {
-            intents.push(Intent::ShowIncidence(sample.id, i, visible));
-        }
-        if incidence.readings > 0 {
-            ui.label(incidence.readings.to_string());
-        }
-        if let Some(e) = errors.and_then(|e| e.incidences.get(i)?.e_percent) {
-            ui.label(digits(e));
-        }
-        ui.end_row();
-    }
-}
-
-fn show_wavelengths(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
-    let name = |i: usize| {
-        let wavelength = sample.scans[i].wavelength_um();
-        wavelength.map_or_else(|| "not stated".to_owned(), |w| format!("{w} um"))
-    };
-    if sample.scans.len() == 1 {
-        if sample.scan().reading_count() > 0 {
-            ui.label(format!("Wavelength {}", name(0)));
-        }
-        return;
-    }
-    let mut selected = sample.current;
-    let count = sample.scans.len();
-    ui.horizontal(|ui| {
-        let label = ui.label("Wavelength");
-        ComboBox::from_id_salt("wavelength")
-            .width(90.0)
-            .show_index(ui, &mut selected, count, name)
-            .labelled_by(label.id);
-    });
-    if selected != sample.current {
-        intents.push(Intent::Wavelength(sample.id, selected));
-    }
+    incidences::show(ui, state, sample, intents);
+    ui.add_space(6.0);
 }

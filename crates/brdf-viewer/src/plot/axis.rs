@@ -60,6 +60,13 @@ impl Axis {
         self.grid(input, LABEL_WIDTH)
     }
 
+    /// The grid lines of a horizontal axis of whole numbers.
+    pub fn integer_grid(input: &GridInput) -> Vec<GridMark> {
+        let mut grid = Self::Linear.horizontal_grid(input);
+        grid.retain(|mark| (mark.value - mark.value.round()).abs() < 1e-9);
+        grid
+    }
+
     fn grid(self, input: &GridInput, label_size: f64) -> Vec<GridMark> {
         marks(match self {
             Self::Linear => linear(input, label_size),

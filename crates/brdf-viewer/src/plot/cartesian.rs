@@ -1,15 +1,17 @@
 //! Cartesian plots against the signed view angle: all incidences in one plot, or one plot per
 //! incidence, with optional residuals below.
 
-use brdf_fit::plot::{Layout, Reading, View};
+use brdf_fit::plot::{Layout, Reading, Theory, View};
 use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, Plot, PlotResponse};
 
 use super::axis::{Axis, degrees_grid};
+use super::choice::choose;
 use super::common::{self, describe, reset_on_demand};
 use super::context::{DrawnCurve, PlotContext};
 use super::hover::{show_residuals, show_values};
 use super::items::{self, Drawing};
+use super::navigation::navigate;
 
 /// The fraction of the height that the residuals occupy.
 const RESIDUALS: f32 = 0.3;
@@ -114,7 +116,7 @@ pub(super) fn panels(ui: &mut Ui, context: &PlotContext) {
 /// The names of the axes, once for all panels.
 fn show_axis_names(ui: &mut Ui, view: &View) {
     let below = if view.residuals {
-        "; below: measured - theory"
+        "; below: residuals"
     } else {
         ""
     };
@@ -216,6 +218,8 @@ fn plot_over_theta<'a>(
         .custom_y_axes(vec![y])
         .show_crosshair(false)
         .label_formatter(|_| None)
+        .allow_scroll(false)
+        .allow_drag(!state.choosing)
         .link_axis(group, shared)
 }
 
@@ -246,13 +250,17 @@ fn show_values_plot(
         .include_y(end(context.range.0))
         .include_y(end(context.range.1));
     let plot = reset_on_demand(ui, context.state, placement.name, plot);
+    let home = [[-90.0, 90.0], [end(context.range.0), end(context.range.1)]];
     let response = plot.show(ui, |plot_ui| {
+        navigate(plot_ui, home);
         for (i, drawn) in curves.iter().enumerate() {
             plot_ui.add(curve_item(format!("curve {i}"), view, axis, drawn));
         }
     });
     let position = |theta_deg: f64, value: f64| Some([theta_deg, axis.position(value)?]);
     show_values(&response, view, curves, position);
+    let of_reading = |reading: &Reading| position(reading.theta_deg, reading.value);
+    choose(context, &response, curves, of_reading);
     if view.layout == Layout::Panels {
         show_panel_title(ui, view, &response, curves);
     }
@@ -268,10 +276,16 @@ fn curve_item<'a>(name: String, view: &View, axis: Axis, drawn: &'a DrawnCurve) 
             items::vertical_line(transform, mirror, colour, shapes);
         }
         items::band(transform, axis, &curve.theory, colour, shapes);
-        let value = |reading: &Reading| reading.value;
-        let style = drawn.mark_style();
-        items::readings(transform, axis, &curve.readings, value, style, shapes);
+        items::readings(
+            transform,
+            axis,
+            drawn,
+            |reading| Some(reading.value),
+            shapes,
+        );
         items::theory(transform, axis, &curve.theory, colour, shapes);
+        let position = |theory: &Theory| Some([theory.theta_deg, axis.position(theory.value)?]);
+        items::ghosts(transform, drawn, position, shapes);
     })
 }
 
@@ -282,20 +296,25 @@ fn show_residual_plot(
     placement: &Placement,
 ) {
     let (axis, limit) = (Axis::Linear, context.residual_limit);
-    let plot = plot_over_theta(context, placement, axis, "measured - theory", true)
+    let name = context.state.interface.residuals.axis_name();
+    let plot = plot_over_theta(context, placement, axis, name, true)
         .include_y(-limit)
         .include_y(limit);
     let plot = reset_on_demand(ui, context.state, placement.name, plot);
+    let home = [[-90.0, 90.0], [-limit, limit]];
     let response = plot.show(ui, |plot_ui| {
+        navigate(plot_ui, home);
         for (i, drawn) in curves.iter().enumerate() {
             let name = format!("residuals {i}");
             plot_ui.add(Drawing::new(name, move |transform, shapes| {
-                let (readings, style) = (&drawn.curve.readings, drawn.mark_style());
-                items::readings(transform, axis, readings, Reading::residual, style, shapes);
+                let value = |reading: &Reading| context.residual(reading);
+                items::readings(transform, axis, drawn, value, shapes);
             }));
         }
     });
-    show_residuals(&response, &context.state.view, curves);
+    let of_reading = |reading: &Reading| Some([reading.theta_deg, context.residual(reading)?]);
+    show_residuals(&response, &context.state.view, curves, of_reading);
+    choose(context, &response, curves, of_reading);
     describe(&response, "Residual plot", curves);
 }
 

@@ -14,7 +14,7 @@ pub fn id(state: &State, name: &str) -> Id {
 
 /// The title of an incidence.
 pub(super) fn title(psi: f64) -> String {
-    format!("psi = {}", degrees(psi))
+    format!("ψ = {}", degrees(psi))
 }
 
 /// Resets the zoom of a plot if the user has requested it since the last frame.

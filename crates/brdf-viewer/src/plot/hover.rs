@@ -33,10 +33,33 @@ pub(super) fn show_values(
     show(response, view, curves, reading, theory);
 }
 
-/// Shows the tooltip in a plot of residuals, which has no theory.
-pub(super) fn show_residuals(response: &PlotResponse<()>, view: &View, curves: &[&DrawnCurve]) {
-    let reading = |reading: &Reading| Some([reading.theta_deg, reading.residual()]);
-    show(response, view, curves, reading, |_| None);
+/// Shows the tooltip in a plot of residuals, which has no theory. `position` is that of a reading.
+pub(super) fn show_residuals(
+    response: &PlotResponse<()>,
+    view: &View,
+    curves: &[&DrawnCurve],
+    position: impl Fn(&Reading) -> Option<[f64; 2]>,
+) {
+    show(response, view, curves, position, |_| None);
+}
+
+/// The reading nearest to a place on the screen, with its position and its curve.
+pub(super) fn nearest_reading<'a>(
+    transform: &PlotTransform,
+    curves: &'a [&'a DrawnCurve<'a>],
+    position: impl Fn(&Reading) -> Option<[f64; 2]>,
+    pointer: Pos2,
+) -> Option<(Pos2, &'a DrawnCurve<'a>, &'a Reading)> {
+    let readings = points_of(curves, |curve| &curve.readings);
+    nearest(transform, readings, position, pointer)
+}
+
+/// The position on the screen of a point of the plot.
+pub(super) fn on_screen(transform: &PlotTransform, [x, y]: [f64; 2]) -> Pos2 {
+    egui::pos2(
+        transform.position_from_point_x(x),
+        transform.position_from_point_y(y),
+    )
 }
 
 fn show(
@@ -50,9 +73,8 @@ fn show(
         return;
     };
     let transform = &response.transform;
-    let readings = points_of(curves, |curve| &curve.readings);
     let theory = points_of(curves, |curve| &curve.theory);
-    let reading = nearest(transform, readings, reading_position, pointer)
+    let reading = nearest_reading(transform, curves, reading_position, pointer)
         .map(|(at, drawn, reading)| Target::Reading(at, drawn, reading));
     let target = reading.or_else(|| {
         let (at, drawn, theory) = nearest(transform, theory, theory_position, pointer)?;
@@ -78,14 +100,8 @@ fn nearest<'a, T>(
     position: impl Fn(&T) -> Option<[f64; 2]>,
     pointer: Pos2,
 ) -> Option<(Pos2, &'a DrawnCurve<'a>, &'a T)> {
-    let on_screen = |[x, y]: [f64; 2]| {
-        egui::pos2(
-            transform.position_from_point_x(x),
-            transform.position_from_point_y(y),
-        )
-    };
     points
-        .filter_map(|(drawn, point)| Some((on_screen(position(point)?), drawn, point)))
+        .filter_map(|(drawn, point)| Some((on_screen(transform, position(point)?), drawn, point)))
         .filter(|(at, ..)| at.distance_sq(pointer) < MOST_DISTANCE * MOST_DISTANCE)
         .min_by(|a, b| {
             let distance = |at: Pos2| at.distance_sq(pointer);
@@ -121,10 +137,10 @@ fn geometry_text(view: &View, drawn: &DrawnCurve, theta_deg: f64) -> String {
     } else {
         let is_opposite = view.theta(theta_deg) < 0.0;
         let half_plane = if is_opposite { PI } else { 0.0 };
-        format!(", phi {}", degrees(view.azimuth + half_plane))
+        format!(", φ {}", degrees(view.azimuth + half_plane))
     };
     let psi = degrees(drawn.curve.psi);
-    format!("{}\npsi {psi}, theta {theta_deg:.2}°{phi}", drawn.sample)
+    format!("{}\nψ {psi}, θ {theta_deg:.2}°{phi}", drawn.sample)
 }
 
 fn plus_minus(sigma: Option<f64>) -> String {
@@ -132,8 +148,13 @@ fn plus_minus(sigma: Option<f64>) -> String {
 }
 
 fn reading_text(view: &View, drawn: &DrawnCurve, reading: &Reading) -> String {
+    let left_out = if drawn.left_out.contains(&reading.index) {
+        "\nleft out of the fit"
+    } else {
+        ""
+    };
     format!(
-        "{}\nmeasured {}{}\ntheory {}\ndifference {}",
+        "{}\nmeasured {}{}\ntheory {}\ndifference {}{left_out}",
         geometry_text(view, drawn, reading.theta_deg),
         digits(reading.value),
         plus_minus(reading.sigma),

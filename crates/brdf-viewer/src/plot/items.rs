@@ -7,6 +7,7 @@ use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, Ui, epaint::PathShape, pos2
 use egui_plot::{PlotBounds, PlotGeometry, PlotItem, PlotItemBase, PlotTransform};
 
 use super::axis::Axis;
+use super::context::DrawnCurve;
 
 /// Positions are clamped to this distance from the plot, in points.
 const FAR: f32 = 1e5;
@@ -232,18 +233,22 @@ pub struct MarkStyle {
     pub colour: Color32,
 }
 
-/// Readings with their error bars. `value` is the value of a reading that is shown.
+/// Readings with their error bars, hollow where they are left out. `value` is the value of a reading
+/// that is shown.
 pub fn readings(
     transform: &PlotTransform,
     axis: Axis,
-    readings: &[Reading],
-    value: impl Fn(&Reading) -> f64,
-    style: MarkStyle,
+    drawn: &DrawnCurve,
+    value: impl Fn(&Reading) -> Option<f64>,
     shapes: &mut Vec<Shape>,
 ) {
+    let (readings, style) = (&drawn.curve.readings, drawn.mark_style());
     let bottom = transform.bounds().min()[1];
     for reading in readings {
-        let (x, value) = (reading.theta_deg, value(reading));
+        let Some(value) = value(reading) else {
+            continue;
+        };
+        let x = reading.theta_deg;
         let ends = reading.sigma.and_then(|sigma| {
             let high = axis.position(value + sigma)?;
             let low = axis.position(value - sigma).unwrap_or(bottom);
@@ -251,9 +256,79 @@ pub fn readings(
         });
         error_bar(transform, ends, style.colour, shapes);
     }
-    let at = |reading: &Reading| Some([reading.theta_deg, axis.position(value(reading))?]);
-    let points: Vec<[f64; 2]> = readings.iter().filter_map(at).collect();
-    marks(transform, &points, style, shapes);
+    let at = |reading: &Reading| Some([reading.theta_deg, axis.position(value(reading)?)?]);
+    used_and_left_out(transform, drawn, at, shapes);
+}
+
+/// The marks of readings at positions of the plot: filled for those that are used in the fit, hollow
+/// for those that are left out.
+pub fn used_and_left_out(
+    transform: &PlotTransform,
+    drawn: &DrawnCurve,
+    at: impl Fn(&Reading) -> Option<[f64; 2]>,
+    shapes: &mut Vec<Shape>,
+) {
+    let readings = &drawn.curve.readings;
+    let is_used = |reading: &&Reading| !drawn.left_out.contains(&reading.index);
+    let used = readings.iter().filter(is_used).filter_map(&at);
+    marks(
+        transform,
+        &used.collect::<Vec<_>>(),
+        drawn.mark_style(),
+        shapes,
+    );
+    if drawn.left_out.is_empty() {
+        return;
+    }
+    let frame = transform.frame().expand(MARK);
+    let stroke = Stroke::new(1.2, drawn.colour);
+    let left_out = readings.iter().filter(|reading| !is_used(reading));
+    let positions = left_out
+        .filter_map(at)
+        .map(|at| screen_position(transform, at));
+    let visible = positions.filter(|position| frame.contains(*position));
+    shapes.extend(visible.map(|position| Shape::circle_stroke(position, 1.4 * MARK, stroke)));
+}
+
+/// The theories that stay in the plot, each with a dash pattern of its own.
+pub fn ghosts(
+    transform: &PlotTransform,
+    drawn: &DrawnCurve,
+    position: impl Fn(&Theory) -> Option<[f64; 2]>,
+    shapes: &mut Vec<Shape>,
+) {
+    for (index, curve) in &drawn.ghosts {
+        let (dash, gap) = dashes(*index);
+        let stroke = Stroke::new(1.6, drawn.colour);
+        let mut solid = Vec::new();
+        let points = curve.theory.iter().map(|theory| {
+            let at = position(theory);
+            at.map_or((f64::NAN, f64::NAN), |[x, y]| (x, y))
+        });
+        line(transform, Axis::Linear, points, stroke, &mut solid);
+        for shape in solid {
+            if let Shape::Path(path) = shape {
+                let visible = within(transform, &path.points);
+                shapes.extend(Shape::dashed_line(&visible, stroke, dash, gap));
+            }
+        }
+    }
+}
+
+/// The dash pattern of a ghost: the lengths of dash and gap, in points.
+pub fn dashes(index: usize) -> (f32, f32) {
+    [(9.0, 5.0), (3.5, 3.5), (15.0, 4.0), (6.0, 9.0)][index % 4]
+}
+
+/// The points of a line up to a plot beyond the frame, so that the number of dashes stays small.
+fn within(transform: &PlotTransform, points: &[Pos2]) -> Vec<Pos2> {
+    let frame = transform.frame();
+    let margin = frame.size();
+    let near = frame.expand2(margin);
+    points
+        .iter()
+        .map(|point| point.clamp(near.min, near.max))
+        .collect()
 }
 
 /// The visible part of the error bar of a reading, if it has one.

@@ -2,19 +2,22 @@
 
 pub mod axis;
 mod cartesian;
+mod choice;
 mod common;
 pub mod context;
 mod hover;
 pub mod items;
+mod navigation;
 mod polar;
 pub mod ticks;
 mod toolbar;
 
-use brdf_fit::plot::{Layout, mark};
+use brdf_fit::plot::{Curve, Layout, mark};
 use egui::{CentralPanel, Ui, Vec2};
 
 use crate::intent::Intent;
 use crate::state::State;
+use crate::state::id::SampleId;
 use crate::theme;
 use context::{DrawnCurve, PlotContext};
 
@@ -49,6 +52,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
             Layout::Panels => cartesian::panels(ui, &context),
             Layout::Polar => polar::show(ui, &context),
         }
+        intents.extend(context.take_requests());
     });
 }
 
@@ -91,11 +95,32 @@ fn drawn_curves<'a>(ui: &Ui, state: &'a State) -> Vec<DrawnCurve<'a>> {
         for (i, curve) in curves.iter().enumerate() {
             all.push(DrawnCurve {
                 curve,
+                scan: sample.scan_id(),
                 sample: &sample.name,
                 colour: theme::colour(family, i, curves.len(), ground),
                 mark: mark(family, i),
+                left_out: sample.scan().left_out(),
+                ghosts: ghosts(state, sample.id, i),
             });
         }
     }
     all
+}
+
+/// The ghosts of a sample at its visible incidence `i`, each with its index.
+fn ghosts(state: &State, sample: SampleId, i: usize) -> Vec<(usize, &Curve)> {
+    let ghosts = state.ghosts.iter().enumerate();
+    ghosts
+        .filter(|(_, ghost)| ghost.sample == sample)
+        .filter_map(|(index, _)| Some((index, state.derived.ghost(index).get(i)?)))
+        .collect()
+}
+
+/// The root mean square of the residuals of curves.
+pub fn residual_rms<'a>(curves: impl Iterator<Item = &'a Curve>) -> f64 {
+    let readings = curves.flat_map(|curve| &curve.readings);
+    let (sum, count) = readings.fold((0.0, 0_u32), |(sum, count), reading| {
+        (sum + reading.residual().powi(2), count + 1)
+    });
+    (sum / f64::from(count.max(1))).sqrt()
 }

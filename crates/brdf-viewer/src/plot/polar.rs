@@ -5,10 +5,12 @@ use egui::{Align2, Shape, Stroke, Ui, Vec2};
 use egui_plot::{Plot, PlotPoint, PlotTransform, Text};
 
 use super::axis::Axis;
+use super::choice::choose;
 use super::common::{self, describe, reset_on_demand};
 use super::context::{DrawnCurve, PlotContext};
 use super::hover::show_values;
 use super::items::{self, Drawing};
+use super::navigation::navigate;
 use super::ticks::{linear_label, round_up};
 
 /// The largest number of circles. There are at least three, except for the smallest numbers.
@@ -35,7 +37,12 @@ pub(super) fn show(ui: &mut Ui, context: &PlotContext) {
     let plot = empty_plot(context, ui.available_size(), radius);
     let plot = reset_on_demand(ui, context.state, "polar", plot);
     let colour = ui.visuals().weak_text_color();
+    let home = [
+        [-1.12 * radius, 1.12 * radius],
+        [-0.16 * radius, 1.12 * radius],
+    ];
     let response = plot.show(ui, |plot_ui| {
+        navigate(plot_ui, home);
         let stroke = Stroke::new(1.0, colour.gamma_multiply(0.35));
         plot_ui.add(Drawing::new("grid".to_owned(), move |transform, shapes| {
             grid(transform, radius, step, stroke, shapes);
@@ -52,6 +59,8 @@ pub(super) fn show(ui: &mut Ui, context: &PlotContext) {
         }
     });
     show_values(&response, view, &curves, position_at_radius);
+    let of_reading = |reading: &Reading| position_at_radius(reading.theta_deg, reading.value);
+    choose(context, &response, &curves, of_reading);
     describe(&response, "BRDF plot", &curves);
 }
 
@@ -65,6 +74,8 @@ fn empty_plot<'a>(context: &PlotContext, size: Vec2, radius: f64) -> Plot<'a> {
         .show_axes(false)
         .show_grid(false)
         .show_crosshair(false)
+        .allow_scroll(false)
+        .allow_drag(!context.state.choosing)
         .label_formatter(|_| None);
     let corners = [[-1.12, -0.16], [1.12, 1.12]];
     corners.into_iter().fold(plot, |plot, [x, y]| {
@@ -94,14 +105,15 @@ fn draw(
         items::error_bar(transform, error_bar(reading), colour, shapes);
     }
     let at = |reading: &Reading| position_at_radius(reading.theta_deg, reading.value);
-    let points: Vec<[f64; 2]> = curve.readings.iter().filter_map(at).collect();
-    items::marks(transform, &points, drawn.mark_style(), shapes);
+    items::used_and_left_out(transform, drawn, at, shapes);
     let points = curve.theory.iter().map(|theory| {
         let [x, y] = position(theory.theta_deg, theory.value);
         (x, y)
     });
     let stroke = Stroke::new(1.8, colour);
     items::line(transform, Axis::Linear, points, stroke, shapes);
+    let ghost = |theory: &Theory| position_at_radius(theory.theta_deg, theory.value);
+    items::ghosts(transform, drawn, ghost, shapes);
 }
 
 /// The ends of the band at a point of the theory.

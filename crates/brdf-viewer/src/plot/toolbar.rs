@@ -3,10 +3,12 @@
 use brdf_fit::Side;
 use brdf_fit::format::counted;
 use brdf_fit::plot::{Layout, Scale};
-use egui::{Checkbox, ComboBox, Ui};
+use egui::{Checkbox, ComboBox, Shape, Stroke, Ui, vec2};
 
+use super::items::dashes;
 use crate::intent::{Command, Intent};
 use crate::state::State;
+use crate::state::interface::ResidualKind;
 use crate::widgets::{choose, degrees, named};
 
 /// Draws the toolbar, and below it a note on readings that are not shown.
@@ -17,12 +19,15 @@ pub(super) fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         ui.spacing_mut().button_padding.x = 3.0;
         show_layouts(ui, state, intents);
         show_options(ui, state, intents);
+        show_residuals(ui, state, intents);
         show_side(ui, state, intents);
         show_planes(ui, state, intents);
+        show_choosing(ui, state, intents);
         if ui.button("Reset zoom").clicked() {
             intents.push(Intent::Command(Command::ResetZoom));
         }
     });
+    show_ghosts(ui, state, intents);
     let note = not_shown(state);
     if !note.is_empty() {
         ui.weak(note);
@@ -59,10 +64,60 @@ fn show_options(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     }
 }
 
+/// The form of the residuals, if they are shown.
+fn show_residuals(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    if !state.view.residuals || state.view.layout == Layout::Polar {
+        return;
+    }
+    let name = |kind: &ResidualKind| match kind {
+        ResidualKind::Absolute => "absolute".to_owned(),
+        ResidualKind::Relative => "relative".to_owned(),
+        ResidualKind::InSigma => "in σ".to_owned(),
+    };
+    let mut kind = state.interface.residuals;
+    let combo = ComboBox::from_id_salt("residuals").width(70.0);
+    let shown = choose(ui, combo, &mut kind, ResidualKind::ALL, name);
+    named(shown, egui::Role::ComboBox, "form of the residuals");
+    if kind != state.interface.residuals {
+        intents.push(Intent::Residuals(kind));
+    }
+}
+
+fn show_choosing(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    let button = ui.selectable_label(state.choosing, "choose");
+    let hint = "Leave readings out of the fit: click on one, or draw a rectangle around several";
+    let button = named(button, egui::Role::Button, Command::ChooseReadings.name());
+    if button.on_hover_text(hint).clicked() {
+        intents.push(Intent::Command(Command::ChooseReadings));
+    }
+}
+
+/// The names of the theories that stay in the plot, with their dashes.
+fn show_ghosts(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    if state.ghosts.is_empty() {
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        let colour = ui.visuals().text_color();
+        for (i, ghost) in state.ghosts.iter().enumerate() {
+            let (_, rect) = ui.allocate_space(vec2(34.0, ui.spacing().interact_size.y));
+            let (dash, gap) = dashes(i);
+            let ends = [rect.left_center(), rect.right_center()];
+            let line = Shape::dashed_line(&ends, Stroke::new(1.6, colour), dash, gap);
+            ui.painter().extend(line);
+            ui.label(&ghost.name);
+            let name = format!("unpin {}", ghost.name);
+            if named(ui.small_button("×"), egui::Role::Button, &name).clicked() {
+                intents.push(Intent::Unpin(i));
+            }
+        }
+    });
+}
+
 fn show_side(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     let name = |side: &Side| match side {
-        Side::Source => "theta > 0: source".to_owned(),
-        Side::Forward => "theta > 0: forward".to_owned(),
+        Side::Source => "θ > 0: source".to_owned(),
+        Side::Forward => "θ > 0: forward".to_owned(),
     };
     let mut view = state.view;
     let combo = ComboBox::from_id_salt("side").width(110.0);
@@ -85,7 +140,7 @@ fn show_planes(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     }
     let name = |azimuth: &f64| {
         let opposite = degrees(azimuth + std::f64::consts::PI);
-        format!("phi = {} / {opposite}", degrees(*azimuth))
+        format!("φ = {} / {opposite}", degrees(*azimuth))
     };
     let mut view = state.view;
     let combo = ComboBox::from_id_salt("plane").width(130.0);
@@ -124,10 +179,20 @@ impl Counts {
     }
 }
 
+/// The number of incidences of visible samples that are not shown.
+fn hidden_incidences(state: &State) -> usize {
+    let incidences = state.visible().flat_map(|sample| &sample.scan().incidences);
+    incidences.filter(|incidence| !incidence.visible).count()
+}
+
 /// The numbers of readings that the plot does not show, and why; empty if it shows all of them.
 fn not_shown(state: &State) -> String {
     let counts = Counts::new(state);
     let mut notes = Vec::new();
+    let hidden = hidden_incidences(state);
+    if hidden > 0 {
+        notes.push(format!("{} hidden", counted(hidden, "incidence")));
+    }
     let outside = counts.all.saturating_sub(counts.in_plane);
     if outside > 0 {
         notes.push(format!(

@@ -1,10 +1,19 @@
 //! Dispatches intents of the user and events of the worker to the operations of the state.
 
+use std::collections::BTreeSet;
+
 use super::State;
 use crate::intent::Intent;
 use crate::job::Event;
 
 impl State {
+    /// Carries out requests of the user.
+    pub fn apply_all(&mut self, intents: Vec<Intent>) {
+        for intent in intents {
+            self.apply(intent);
+        }
+    }
+
     /// Carries out a request of the user.
     pub fn apply(&mut self, intent: Intent) {
         match intent {
@@ -26,6 +35,18 @@ impl State {
                     incidence.visible = visible;
                 }
             }),
+            Intent::UseIncidence(id, i, used) => self.use_incidence(id, i, used),
+            Intent::ToggleReadings(id, readings) => self.toggle_readings(id, &readings),
+            Intent::UseAllReadings(id) => self.leave_out(id, BTreeSet::new()),
+            Intent::ToggleModel(model) => self.toggle_model(model),
+            Intent::Unpin(i) => {
+                if i < self.ghosts.len() {
+                    self.ghosts.remove(i);
+                }
+            }
+            Intent::PlotParameter(parameter) => self.interface.parameter = parameter,
+            Intent::Residuals(kind) => self.interface.residuals = kind,
+            Intent::UseModel(model) => self.take_model(model),
             Intent::Convention(convention) => self.convention = convention,
             Intent::View(view) => self.view = view,
             Intent::PlotColumns(columns) => self.columns = columns,
@@ -66,9 +87,10 @@ impl State {
                     run.record(scan, &step);
                 }
             }
+            Event::Found(scan, report) => self.take_found(scan, *report),
             Event::Fitted(scan, report) => self.take_report(scan, *report),
             Event::FitAborted(scan, error) => self.take_fit_error(scan, error),
-            Event::FitsEnded => self.end_run(),
+            Event::FitsEnded(run) => self.end_run(run),
             Event::Written(path) => self.status = format!("{} written", path.display()),
             Event::WriteFailed(error) => self.report_error(error),
         }

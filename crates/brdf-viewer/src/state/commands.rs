@@ -35,6 +35,8 @@ impl State {
             }
             Command::CopyParameters => self.copy_parameters(),
             Command::Quit => self.effects.push(Effect::Quit),
+            Command::Pin => self.pin(),
+            Command::UnpinAll => self.ghosts.clear(),
             Command::Undo => self.undo(),
             Command::Redo => self.redo(),
             Command::ResetAll => self.reset_all(),
@@ -69,6 +71,7 @@ impl State {
             Command::Samples => self.interface.samples ^= true,
             Command::Parameters => self.interface.parameters ^= true,
             Command::Results => self.interface.results ^= true,
+            Command::ChooseReadings => self.choosing ^= true,
             Command::Dark => self.interface.dark = Some(!self.is_dark()),
             Command::SystemTheme => self.interface.dark = None,
             _ => {}
@@ -80,9 +83,11 @@ impl State {
         let active = self.active_sample();
         let scan = active.map(Sample::scan);
         match command {
-            Command::Close | Command::CopyParameters | Command::Export(OutputKind::Curves) => {
-                active.is_some()
-            }
+            Command::Close
+            | Command::CopyParameters
+            | Command::Pin
+            | Command::Export(OutputKind::Curves) => active.is_some(),
+            Command::UnpinAll => !self.ghosts.is_empty(),
             Command::CloseAll => !self.samples.is_empty(),
             Command::Export(OutputKind::Figure(_)) => self.visible().next().is_some(),
             Command::Export(OutputKind::Fit) => active.is_some_and(Sample::is_fitted),
@@ -91,8 +96,12 @@ impl State {
             Command::ResetAll => {
                 scan.is_some_and(|scan| scan.fitted_parameters() != scan.parameters)
             }
-            Command::Fit => !self.is_fitting() && scan.is_some_and(|scan| scan.reading_count() > 0),
-            Command::FitAll => !self.is_fitting() && !self.scans_to_fit(Scope::All).is_empty(),
+            Command::Fit => {
+                !self.is_fitting_on_request() && scan.is_some_and(|scan| scan.used_count() > 0)
+            }
+            Command::FitAll => {
+                !self.is_fitting_on_request() && !self.scans_to_fit(Scope::All).is_empty()
+            }
             Command::Cancel => self.is_fitting(),
             Command::Residuals => self.view.layout != Layout::Polar,
             _ => true,
@@ -108,6 +117,7 @@ impl State {
             Command::Together => self.view.layout == Layout::Together,
             Command::Panels => self.view.layout == Layout::Panels,
             Command::Polar => self.view.layout == Layout::Polar,
+            Command::ChooseReadings => self.choosing,
             Command::Samples => self.interface.samples,
             Command::Parameters => self.interface.parameters,
             Command::Results => self.interface.results,

@@ -4,11 +4,12 @@
 //! changed. The selection of readings does not depend on the parameters, and nothing here depends
 //! on the pointer.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use brdf_core::{Family, Geometry, ModelParameters, check_refractive_index};
 use brdf_fit::DEFAULT_N;
 use brdf_fit::FitProblem;
+use brdf_fit::Measurements;
 use brdf_fit::Uncertainty;
 use brdf_fit::Weights;
 use brdf_fit::plot::{Curve, Layout, Quantity, Scale, Selection, View, curves};
@@ -16,6 +17,7 @@ use brdf_fit::{FitError, FitOptions, RefractiveIndex};
 use brdf_fit::{IncidenceError, Objective};
 
 use super::fit_settings::{FitSettings, ReadingWeights};
+use super::ghost::Ghost;
 use super::id::{SampleId, ScanId};
 use super::parameters::EditedParameters;
 use super::sample::{Sample, Scan};
@@ -58,6 +60,16 @@ pub struct RelativeErrors {
     pub incidences: Vec<IncidenceError>,
 }
 
+impl RelativeErrors {
+    /// E of the incidence at an angle in radians, in percent.
+    pub fn of_incidence(&self, psi: f64) -> Option<f64> {
+        let psi_deg = psi.to_degrees();
+        let mut incidences = self.incidences.iter();
+        let found = incidences.find(|incidence| (incidence.psi_deg - psi_deg).abs() < 1e-6)?;
+        found.e_percent
+    }
+}
+
 /// Why E is not available.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -87,13 +99,19 @@ type SelectionKey = (View, Vec<f64>, usize);
 /// In addition, whether the curves have a band of uncertainty.
 type CurvesKey = (SelectionKey, Quantity, EditedParameters, bool);
 
+/// The family of models, the weights, and the readings that are left out.
+type ObjectiveKey = (Family, ReadingWeights, BTreeSet<usize>);
+
+/// The view, the visible incidence angles and the parameters of a ghost.
+type GhostKey = (View, Vec<f64>, EditedParameters);
+
 /// The values derived from one scan.
 #[derive(Debug, Clone, Default)]
 struct DerivedScan {
     selection: Cached<SelectionKey, Selection>,
     curves: Cached<CurvesKey, Vec<Curve>>,
-    objective: Cached<(Family, ReadingWeights), Result<Objective, NoRelativeErrors>>,
-    errors: Cached<(EditedParameters, ReadingWeights), Result<RelativeErrors, NoRelativeErrors>>,
+    objective: Cached<ObjectiveKey, Result<Objective, NoRelativeErrors>>,
+    errors: Cached<(EditedParameters, ObjectiveKey), Result<RelativeErrors, NoRelativeErrors>>,
     reflectance: Cached<(Family, ModelParameters), Reflectances>,
 }
 
@@ -101,6 +119,7 @@ struct DerivedScan {
 #[derive(Debug, Clone, Default)]
 pub struct Derived {
     scans: HashMap<ScanId, DerivedScan>,
+    ghosts: Vec<Cached<GhostKey, Vec<Curve>>>,
 }
 
 impl Derived {
@@ -108,6 +127,30 @@ impl Derived {
     pub fn curves(&self, scan: ScanId) -> &[Curve] {
         let curves = self.scans.get(&scan).and_then(|scan| scan.curves.last());
         curves.map_or(&[], Vec::as_slice)
+    }
+
+    /// The curves of a ghost, by its index: one per visible incidence of its sample.
+    pub fn ghost(&self, index: usize) -> &[Curve] {
+        let curves = self.ghosts.get(index).and_then(Cached::last);
+        curves.map_or(&[], Vec::as_slice)
+    }
+
+    /// Updates the curves of the ghosts.
+    pub fn refresh_ghosts(&mut self, ghosts: &[Ghost], samples: &[Sample], view: &View) {
+        self.ghosts.resize_with(ghosts.len(), Cached::default);
+        let view = without_axes(view);
+        for (cached, ghost) in self.ghosts.iter_mut().zip(ghosts) {
+            let sample = samples.iter().find(|sample| sample.id == ghost.sample);
+            let psi = sample.map_or_else(Vec::new, |sample| sample.scan().visible_psi());
+            cached.get((view, psi, ghost.parameters), |(view, psi, parameters)| {
+                let none = Measurements::default();
+                let selection = Selection::of(&none, view, Some(psi), 1);
+                let brdf = parameters.brdf();
+                brdf.map_or_else(Vec::new, |brdf| {
+                    curves(&none, &selection, &brdf, None, view)
+                })
+            });
+        }
     }
 
     /// The visible readings of a scan.
@@ -153,15 +196,19 @@ impl Derived {
     }
 }
 
+/// A view as far as readings and curves depend on it: neither on the axes nor on the layout.
+fn without_axes(view: &View) -> View {
+    View {
+        scale: Scale::default(),
+        layout: Layout::default(),
+        residuals: false,
+        ..*view
+    }
+}
+
 impl DerivedScan {
     fn refresh_curves(&mut self, scan: &Scan, view: &View, columns: usize) {
-        // Readings and curves depend neither on the axes nor on the layout.
-        let view = View {
-            scale: Scale::default(),
-            layout: Layout::default(),
-            residuals: false,
-            ..*view
-        };
+        let view = without_axes(view);
         let plane = View {
             quantity: Quantity::default(),
             ..view
@@ -189,8 +236,9 @@ impl DerivedScan {
     fn refresh_errors(&mut self, scan: &Scan, reading_weights: ReadingWeights, weights: &Weights) {
         let parameters = scan.parameters;
         let family = parameters.model.family();
-        let objective = self.objective.get((family, reading_weights), |_| {
-            if scan.reading_count() == 0 {
+        let key = (family, reading_weights, scan.left_out().clone());
+        let objective = self.objective.get(key.clone(), |_| {
+            if scan.used_count() == 0 {
                 return Err(NoRelativeErrors::NoReadings);
             }
             let n = check_refractive_index(parameters.values.n).unwrap_or(DEFAULT_N);
@@ -200,9 +248,9 @@ impl DerivedScan {
                 weights: weights.clone(),
                 ..FitOptions::default()
             };
-            Ok(FitProblem::new(&scan.measurements, &options)?.into_objective())
+            Ok(FitProblem::new(scan.used(), &options)?.into_objective())
         });
-        self.errors.get((parameters, reading_weights), |_| {
+        self.errors.get((parameters, key), |_| {
             let objective = objective.as_ref().map_err(Clone::clone)?;
             let (error, incidences) = objective.error_and_by_incidence(&parameters.values);
             Ok(RelativeErrors {

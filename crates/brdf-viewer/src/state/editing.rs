@@ -1,10 +1,12 @@
 //! Editing: the active sample, its parameters, and undo and redo.
 
+use std::collections::BTreeSet;
+
 use brdf_fit::{Model, Parameter};
 
 use super::State;
-use super::fit_settings::Scope;
-use super::history::Change;
+use super::fit_settings::{Scope, Stages};
+use super::history::{Change, Edited};
 use super::id::{SampleId, ScanId};
 use super::parameters::EditedParameters;
 use super::sample::Sample;
@@ -88,23 +90,28 @@ impl State {
     pub(super) fn undo(&mut self) {
         self.commit();
         if let Some(changes) = self.history.undo() {
-            self.restore(&changes, |change| change.before);
+            self.restore(&changes, |change| &change.before);
         }
     }
 
     pub(super) fn redo(&mut self) {
         if let Some(changes) = self.history.redo() {
-            self.restore(&changes, |change| change.after);
+            self.restore(&changes, |change| &change.after);
         }
     }
 
-    /// Restores the parameters of scans. If none of them is visible, activates the first one, so
+    /// Restores what was edited of scans. If none of them is visible, activates the first one, so
     /// that the user sees the effect.
-    fn restore(&mut self, changes: &[Change], parameters: impl Fn(&Change) -> EditedParameters) {
+    fn restore(&mut self, changes: &[Change], edited: impl Fn(&Change) -> &Edited) {
         for change in changes {
             if let Some(scan) = self.scan_mut(change.scan) {
-                scan.parameters = parameters(change);
-                scan.committed = scan.parameters;
+                match edited(change) {
+                    Edited::Parameters(parameters) => {
+                        scan.parameters = *parameters;
+                        scan.committed = *parameters;
+                    }
+                    Edited::LeftOut(readings) => scan.leave_out(readings.clone()),
+                }
             }
         }
         let active = self.active_sample().filter(|sample| sample.visible);
@@ -113,6 +120,81 @@ impl State {
         if let Some(first) = changes.first().filter(|_| !is_seen) {
             self.show(first.scan);
         }
+    }
+
+    /// Leaves readings of a scan out of its fit, in place of those that were left out before.
+    pub(super) fn leave_out(&mut self, id: ScanId, readings: BTreeSet<usize>) {
+        self.commit();
+        let Some(scan) = self.scan_mut(id) else {
+            return;
+        };
+        let before = scan.left_out().clone();
+        scan.leave_out(readings);
+        let after = scan.left_out().clone();
+        if before != after {
+            self.history.push(vec![Change {
+                scan: id,
+                before: Edited::LeftOut(before),
+                after: Edited::LeftOut(after),
+            }]);
+        }
+    }
+
+    /// Leaves all readings of an incidence out, or none of them.
+    pub(super) fn use_incidence(&mut self, id: SampleId, incidence: usize, used: bool) {
+        let Some(sample) = self.sample(id) else {
+            return;
+        };
+        let (scan_id, scan) = (sample.scan_id(), sample.scan());
+        let incidences = scan.measurements.incidences();
+        let Some(incidence) = incidences.get(incidence) else {
+            return;
+        };
+        let mut left_out = scan.left_out().clone();
+        for reading in &incidence.readings {
+            if used {
+                left_out.remove(reading);
+            } else {
+                left_out.insert(*reading);
+            }
+        }
+        self.leave_out(scan_id, left_out);
+    }
+
+    /// Leaves readings out that are used, or uses them again if all of them are left out.
+    pub(super) fn toggle_readings(&mut self, id: ScanId, readings: &[usize]) {
+        let Some(scan) = self.scan(id) else {
+            return;
+        };
+        let mut left_out = scan.left_out().clone();
+        if readings.iter().all(|reading| left_out.contains(reading)) {
+            left_out.retain(|reading| !readings.contains(reading));
+        } else {
+            left_out.extend(readings);
+        }
+        self.leave_out(id, left_out);
+    }
+
+    /// Takes the parameters of a model that the last fit of the active scan was compared with.
+    pub(super) fn take_model(&mut self, model: Model) {
+        let Some(sample) = self.active_sample_mut() else {
+            return;
+        };
+        let scan = sample.scan_mut();
+        let report = scan.last_fit.as_ref();
+        let mut models = report.iter().flat_map(|report| &report.assessment);
+        let found = models.find_map(|assessment| {
+            let mut candidates = assessment.models.iter();
+            candidates.find(|candidate| candidate.model == model)
+        });
+        let values = found.map_or_else(
+            || model.start(scan.parameters.values),
+            |candidate| candidate.parameters,
+        );
+        scan.parameters.model = model;
+        scan.parameters.values = values;
+        self.commit();
+        self.fit(Stages::Both, Scope::Wavelength);
     }
 
     fn show(&mut self, scan: ScanId) {

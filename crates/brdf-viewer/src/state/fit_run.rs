@@ -24,6 +24,10 @@ pub enum Progress {
 /// The fits that the worker is making, or made last.
 #[derive(Debug, Clone)]
 pub struct FitRun {
+    /// The number of the run, which tells the end of this run from that of an earlier one.
+    pub number: u64,
+    /// Whether the run was started by the opening of files and not by the user.
+    pub automatic: bool,
     queue: Vec<QueuedFit>,
     /// The error messages of failed fits.
     pub errors: Vec<String>,
@@ -49,13 +53,15 @@ struct QueuedFit {
 
 impl FitRun {
     /// A run over scans that has just been started; `None` without any scan.
-    pub fn new(scans: &[ScanId]) -> Option<Self> {
+    pub fn new(number: u64, automatic: bool, scans: &[ScanId]) -> Option<Self> {
         let queued = |&scan: &ScanId| QueuedFit {
             scan,
             cancel: CancelFlag::default(),
             ended: false,
         };
         Some(Self {
+            number,
+            automatic,
             queue: scans.iter().map(queued).collect(),
             errors: Vec::new(),
             scan: *scans.first()?,
@@ -70,6 +76,18 @@ impl FitRun {
     pub fn cancel_flags(&self) -> impl Iterator<Item = (ScanId, CancelFlag)> {
         let all = self.queue.iter();
         all.map(|queued| (queued.scan, queued.cancel.clone()))
+    }
+
+    /// Whether the fit of a scan has not ended.
+    pub fn is_waiting_for(&self, scan: ScanId) -> bool {
+        let mut queue = self.queue.iter();
+        queue.any(|queued| queued.scan == scan && !queued.ended)
+    }
+
+    /// The scans whose fits have not ended.
+    pub fn waiting(&self) -> impl Iterator<Item = ScanId> {
+        let waiting = self.queue.iter().filter(|queued| !queued.ended);
+        waiting.map(|queued| queued.scan)
     }
 
     /// The number of fits.

@@ -83,6 +83,8 @@ pub struct FitSettings {
     /// Whether the GGX and Beckmann models are fitted as well.
     #[serde(rename = "compare")]
     pub compare_models: bool,
+    /// Whether scans are fitted when they are opened.
+    pub on_opening: bool,
 }
 
 impl Default for FitSettings {
@@ -97,6 +99,7 @@ impl Default for FitSettings {
             energy_limit_deg: brdf_fit::ENERGY_LIMIT_DEG,
             start: Start::Paper,
             compare_models: false,
+            on_opening: true,
         }
     }
 }

@@ -1,4 +1,6 @@
-//! Undo and redo of parameter changes.
+//! Undo and redo of changes of the parameters, and of the choice of readings.
+
+use std::collections::BTreeSet;
 
 use super::id::{SampleId, ScanId};
 use super::parameters::EditedParameters;
@@ -6,15 +8,24 @@ use super::parameters::EditedParameters;
 /// The largest number of undo steps.
 const MOST_STEPS: usize = 1000;
 
-/// A finished change of the parameters of a scan.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A finished change of a scan.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Change {
     /// The scan.
     pub scan: ScanId,
-    /// The parameters before the change.
-    pub before: EditedParameters,
-    /// The parameters after the change.
-    pub after: EditedParameters,
+    /// What it was before the change.
+    pub before: Edited,
+    /// What it is after the change.
+    pub after: Edited,
+}
+
+/// What the user edits of a scan.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Edited {
+    /// The parameters.
+    Parameters(EditedParameters),
+    /// The indices of the readings that are left out.
+    LeftOut(BTreeSet<usize>),
 }
 
 /// The changes that can be undone and redone. A step may change several scans.

@@ -1,5 +1,7 @@
 //! The visible panels, the open dialog and the messages.
 
+use brdf_fit::Parameter;
+use brdf_fit::plot::Reading;
 use serde::{Deserialize, Serialize};
 
 use crate::output_kind::OutputKind;
@@ -8,39 +10,95 @@ use crate::output_kind::OutputKind;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ResultTab {
-    /// The tables that the command line prints.
+    /// What was read, how well the model describes it, and the parameters.
     #[default]
-    Tables,
-    /// E against iteration.
-    Convergence,
+    Summary,
+    /// The models that the fit was compared with.
+    Models,
+    /// The fits of all wavelengths.
+    Wavelengths,
+    /// The residuals against the reading.
+    Residuals,
     /// The profile of E over k1.
     Profile,
     /// The hemispherical reflectance.
     Reflectance,
+    /// E against iteration.
+    Convergence,
+    /// Everything that the command line prints.
+    #[serde(alias = "tables")]
+    Report,
 }
 
 impl ResultTab {
     /// All tabs.
-    pub const ALL: [Self; 4] = [
-        Self::Tables,
-        Self::Convergence,
+    pub const ALL: [Self; 8] = [
+        Self::Summary,
+        Self::Models,
+        Self::Wavelengths,
+        Self::Residuals,
         Self::Profile,
         Self::Reflectance,
+        Self::Convergence,
+        Self::Report,
     ];
 
     /// Whether the tab depends on the current parameters, and not only on the last fit.
     pub fn shows_current_parameters(self) -> bool {
-        matches!(self, Self::Profile | Self::Reflectance)
+        matches!(self, Self::Profile | Self::Reflectance | Self::Residuals)
     }
 
     /// The title.
     pub fn name(self) -> &'static str {
         match self {
-            Self::Tables => "Tables",
-            Self::Convergence => "E against iteration",
-            Self::Profile => "Profile of k1",
+            Self::Summary => "Summary",
+            Self::Models => "Models",
+            Self::Wavelengths => "Wavelengths",
+            Self::Residuals => "Residuals",
+            Self::Profile => "Profile",
             Self::Reflectance => "Reflectance",
+            Self::Convergence => "Iterations",
+            Self::Report => "Report",
         }
+    }
+}
+
+/// How residuals are expressed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ResidualKind {
+    /// Measured minus theory, in the unit of the plot.
+    #[default]
+    Absolute,
+    /// Measured minus theory in percent of the theory.
+    Relative,
+    /// Measured minus theory in standard deviations: of the reading where the file states one, else
+    /// of all residuals that are shown.
+    InSigma,
+}
+
+impl ResidualKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Absolute, Self::Relative, Self::InSigma];
+
+    /// The name of the axis.
+    pub fn axis_name(self) -> &'static str {
+        match self {
+            Self::Absolute => "measured - theory",
+            Self::Relative => "measured / theory - 1, %",
+            Self::InSigma => "(measured - theory) / σ",
+        }
+    }
+
+    /// The residual of a reading; `None` where it is not defined. `rms` is that of all residuals.
+    pub fn of(self, reading: &Reading, rms: f64) -> Option<f64> {
+        let residual = reading.residual();
+        let value = match self {
+            Self::Absolute => residual,
+            Self::Relative => 100.0 * residual / reading.theory,
+            Self::InSigma => residual / reading.sigma.unwrap_or(rms),
+        };
+        value.is_finite().then_some(value)
     }
 }
 
@@ -58,6 +116,10 @@ pub struct Interface {
     pub results: bool,
     /// The selected tab of the results.
     pub tab: ResultTab,
+    /// How residuals are expressed.
+    pub residuals: ResidualKind,
+    /// The parameter that is plotted against the wavelength.
+    pub parameter: Parameter,
 }
 
 impl Default for Interface {
@@ -67,7 +129,9 @@ impl Default for Interface {
             samples: true,
             parameters: true,
             results: true,
-            tab: ResultTab::Tables,
+            tab: ResultTab::Summary,
+            residuals: ResidualKind::Absolute,
+            parameter: Parameter::K1,
         }
     }
 }

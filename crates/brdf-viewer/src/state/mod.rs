@@ -15,6 +15,7 @@ mod exporting;
 pub mod fit_run;
 pub mod fit_settings;
 mod fitting;
+pub mod ghost;
 pub mod history;
 pub mod id;
 pub mod interface;
@@ -34,6 +35,7 @@ use crate::output_kind::OutputKind;
 use derived::Derived;
 use fit_run::FitRun;
 use fit_settings::{FitSettings, Scope};
+use ghost::Ghost;
 use history::History;
 use id::{SampleId, ScanId};
 use interface::{Dialog, Interface, Message, Severity};
@@ -77,6 +79,10 @@ pub struct State {
     pub fit_settings: FitSettings,
     /// The current or the last run of fits.
     pub fit_run: Option<FitRun>,
+    /// Whether a click or a rectangle in the plot chooses readings, instead of moving the plot.
+    pub choosing: bool,
+    /// The theories that stay in the plot.
+    pub ghosts: Vec<Ghost>,
     /// The parameter changes that can be undone and redone.
     pub history: History,
     /// The messages, the latest last.
@@ -97,6 +103,10 @@ pub struct State {
     pub derived: Derived,
     effects: Vec<Effect>,
     next_id: u64,
+    /// The number of the next run of fits.
+    next_run: u64,
+    /// The opened scans that are to be fitted.
+    to_fit: Vec<ScanId>,
 }
 
 impl State {
@@ -137,6 +147,8 @@ impl State {
         let (view, settings) = (&self.view, &self.fit_settings);
         self.derived
             .refresh(&self.samples, self.active, view, self.columns, settings);
+        self.derived
+            .refresh_ghosts(&self.ghosts, &self.samples, view);
     }
 
     /// The active sample.
@@ -191,6 +203,12 @@ impl State {
     /// Whether the worker is fitting.
     pub fn is_fitting(&self) -> bool {
         self.fit_run.as_ref().is_some_and(FitRun::is_running)
+    }
+
+    /// Whether the worker is making fits that the user has asked for.
+    pub fn is_fitting_on_request(&self) -> bool {
+        let running = self.fit_run.as_ref().filter(|run| run.is_running());
+        running.is_some_and(|run| !run.automatic)
     }
 
     /// Whether the worker is fitting or reading.

@@ -2,11 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use brdf_fit::plot::Scale;
+
 use super::id::SampleId;
 use super::sample::{Opened, Sample};
 use super::saved::{MOST_RECENT, Reopened};
 use super::{State, built_in};
 use crate::job::{FileJob, Job};
+
+/// Readings that span more than this are shown on a logarithmic axis: two decades.
+const LARGE_RANGE: f64 = 100.0;
 
 impl State {
     /// Opens files. Their paths are made absolute, because the next session may start in another
@@ -25,7 +30,10 @@ impl State {
 
     pub(super) fn open_built_in(&mut self, entry: usize) {
         match built_in::open(entry) {
-            Some(Ok(opened)) => self.add(opened, 1),
+            Some(Ok(opened)) => {
+                self.choose_scale(std::slice::from_ref(&opened));
+                self.add(opened, 1);
+            }
             Some(Err(error)) => self.report_error(error.to_string()),
             None => {}
         }
@@ -43,6 +51,7 @@ impl State {
 
     /// Adds the samples of a source. `file` is its path, if it is a file.
     pub(super) fn add_opened(&mut self, file: Option<PathBuf>, all: Vec<Opened>) {
+        self.choose_scale(&all);
         let count = all.len();
         for opened in all {
             self.add(opened, count);
@@ -67,6 +76,15 @@ impl State {
         self.samples.push(sample);
         self.zoom_resets += 1;
         self.activate(id);
+        self.fit_opened(id);
+    }
+
+    /// Chooses a logarithmic axis where the readings of a new sample span many decades.
+    fn choose_scale(&mut self, opened: &[Opened]) {
+        let mut scans = opened.iter().flat_map(|opened| &opened.scans);
+        if scans.any(|scan| scan.dynamic_range() > LARGE_RANGE) {
+            self.view.scale = Scale::Logarithmic;
+        }
     }
 
     /// A name that no other sample has: "a", "a (2)".
@@ -83,6 +101,7 @@ impl State {
         }
         self.samples.retain(|sample| sample.id != id);
         self.history.remove_sample(id);
+        self.ghosts.retain(|ghost| ghost.sample != id);
         if self.active == Some(id) {
             self.active = self.samples.last().map(|sample| sample.id);
         }

@@ -1,26 +1,31 @@
 //! A sample with its scans, one per wavelength, and the parameters edited for each.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use brdf_core::ModelParameters;
 use brdf_core::published::PublishedSample;
 use brdf_fit::FitProblem;
-use brdf_fit::Model;
 use brdf_fit::output::resolved;
+use brdf_fit::read::LazyScan;
 use brdf_fit::report::Report;
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
+use brdf_fit::{Model, Parameter};
 
 use super::convergence::ConvergencePoint;
-use super::history::Change;
+use super::history::{Change, Edited};
 use super::id::{SampleId, ScanId};
 use super::parameters::EditedParameters;
 
 /// Incidence angles of a theory without readings, in degrees: those of the paper's scans.
 const THEORY_PSI_DEG: [f64; 5] = [15.0, 30.0, 45.0, 60.0, 75.0];
 
-/// The largest number of visible incidences of a new sample. More curves are hard to distinguish.
-const MOST_INITIALLY_VISIBLE: usize = 8;
+/// Up to this number, all incidences of a new sample are visible.
+const MOST_VISIBLE: usize = 20;
+
+/// Of more incidences this number is visible at first, because more curves are hard to distinguish.
+const VISIBLE_OF_MANY: usize = 8;
 
 /// The content of a source that was opened.
 #[derive(Debug)]
@@ -63,6 +68,13 @@ pub struct Sample {
 pub struct Scan {
     /// The readings; empty if there is only a theory.
     pub measurements: Arc<Measurements>,
+    /// The indices of the readings that the user has left out.
+    left_out: BTreeSet<usize>,
+    /// The readings without those.
+    used: Arc<Measurements>,
+    /// The channel of a table of which all bins are fitted; `measurements` are then those that are
+    /// shown.
+    pub table: Option<LazyScan>,
     /// The incidences in ascending order.
     pub incidences: Vec<Incidence>,
     /// The azimuths of the planes that contain readings, in radians.
@@ -90,6 +102,17 @@ pub struct Incidence {
     pub readings: usize,
     /// Whether the incidence is visible in the plot.
     pub visible: bool,
+}
+
+/// Which readings of an incidence a fit uses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Usage {
+    /// All.
+    All,
+    /// Some of them.
+    Some,
+    /// None.
+    None,
 }
 
 impl Scan {
@@ -124,11 +147,16 @@ impl Scan {
         parameters: EditedParameters,
     ) -> Self {
         let count = incidences.len();
-        let visible_count = MOST_INITIALLY_VISIBLE.min(count);
+        let visible_count = if count > MOST_VISIBLE {
+            VISIBLE_OF_MANY
+        } else {
+            count
+        };
         // Evenly spaced from the first to the last incidence.
         let visible: Vec<usize> = (0..visible_count)
             .map(|i| i * (count - 1) / (visible_count - 1).max(1))
             .collect();
+        let measurements = Arc::new(measurements);
         let incidences = incidences.iter().enumerate();
         let incidences = incidences.map(|(i, &(psi, readings))| Incidence {
             psi,
@@ -137,7 +165,10 @@ impl Scan {
         });
         Self {
             incidences: incidences.collect(),
-            measurements: Arc::new(measurements),
+            used: Arc::clone(&measurements),
+            measurements,
+            left_out: BTreeSet::new(),
+            table: None,
             planes,
             parameters,
             committed: parameters,
@@ -159,8 +190,88 @@ impl Scan {
             self.parameters.model = fit.model();
             self.parameters.values = fit.at();
         }
+        self.keep_fit(report);
+    }
+
+    /// Stores a fit, and leaves the current parameters as they are.
+    pub fn keep_fit(&mut self, report: Report) {
         self.last_fit = Some(Arc::new(report));
         self.fit_error = None;
+    }
+
+    /// Whether the user has changed the parameters since they were initial or fitted.
+    pub fn is_edited(&self) -> bool {
+        let fitted = self.fitted_parameters();
+        (self.parameters.model, self.parameters.values) != (fitted.model, fitted.values)
+    }
+
+    /// Whether n is a default value, because the file does not state one.
+    pub fn assumes_n(&self) -> bool {
+        self.reading_count() > 0
+            && self.measurements.refractive_index.is_none()
+            && !self.parameters.model.frees(Parameter::N)
+            && self.parameters.values.n == brdf_fit::DEFAULT_N
+    }
+
+    /// The indices of the readings that the user has left out.
+    pub fn left_out(&self) -> &BTreeSet<usize> {
+        &self.left_out
+    }
+
+    /// Leaves readings out, in place of those that were left out before. Indices that the scan does
+    /// not have are ignored.
+    pub fn leave_out(&mut self, readings: BTreeSet<usize>) {
+        let count = self.reading_count();
+        self.left_out = readings.into_iter().filter(|i| *i < count).collect();
+        self.used = if self.left_out.is_empty() {
+            Arc::clone(&self.measurements)
+        } else {
+            let left_out: Vec<usize> = self.left_out.iter().copied().collect();
+            Arc::new(self.measurements.without(&left_out))
+        };
+    }
+
+    /// Which readings of each incidence a fit uses.
+    pub fn usage_of_incidences(&self) -> Vec<Usage> {
+        if self.left_out.is_empty() {
+            return vec![Usage::All; self.incidences.len()];
+        }
+        let incidences = self.measurements.incidences();
+        let usage = |incidence: &brdf_fit::Incidence| {
+            let readings = incidence.readings.iter();
+            let left_out = readings.filter(|i| self.left_out.contains(i)).count();
+            match left_out {
+                0 => Usage::All,
+                count if count == incidence.readings.len() => Usage::None,
+                _ => Usage::Some,
+            }
+        };
+        incidences.iter().map(usage).collect()
+    }
+
+    /// The readings that a fit uses.
+    pub fn used(&self) -> &Arc<Measurements> {
+        &self.used
+    }
+
+    /// The number of readings that a fit uses.
+    pub fn used_count(&self) -> usize {
+        self.used.readings().len()
+    }
+
+    /// The ratio of the largest to the smallest reading above zero; 1 without any.
+    pub fn dynamic_range(&self) -> f64 {
+        let brdf = self
+            .measurements
+            .readings()
+            .iter()
+            .map(|reading| reading.brdf);
+        let (least, most) = brdf
+            .filter(|brdf| *brdf > 0.0)
+            .fold((f64::INFINITY, 0.0_f64), |(least, most), brdf| {
+                (least.min(brdf), most.max(brdf))
+            });
+        if most > 0.0 { most / least } else { 1.0 }
     }
 
     /// Ends a change of the parameters, and returns it if they differ from the committed ones.
@@ -169,8 +280,8 @@ impl Scan {
         let before = std::mem::replace(&mut self.committed, self.parameters);
         (before != self.parameters).then_some(Change {
             scan: id,
-            before,
-            after: self.parameters,
+            before: Edited::Parameters(before),
+            after: Edited::Parameters(self.parameters),
         })
     }
 

@@ -1,14 +1,16 @@
 //! Fits scans one after the other.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
+use brdf_fit::read::ReadError;
 use brdf_fit::report::{Depth, ModelChoice, Report};
-use brdf_fit::{Observer, Step};
+use brdf_fit::{Observer, Phase, Step};
 
 use super::events::EventSender;
 use super::panics::catch_panics;
 use crate::cancel::CancelFlag;
-use crate::job::{Event, FitJob};
+use crate::job::{Event, FitJob, FitJobs};
 use crate::state::id::ScanId;
 
 /// Sends the steps of a fit as events, and cancels the fit.
@@ -22,11 +24,8 @@ impl FitObserver<'_> {
     fn is_cancelled(&self) -> bool {
         self.cancel.iter().any(|flag| flag.is_cancelled())
     }
-}
 
-impl Observer for FitObserver<'_> {
-    fn step(&self, step: &Step) -> ControlFlow<()> {
-        self.events.send(Event::Step(self.scan, *step));
+    fn flow(&self) -> ControlFlow<()> {
         if self.is_cancelled() {
             ControlFlow::Break(())
         } else {
@@ -35,10 +34,17 @@ impl Observer for FitObserver<'_> {
     }
 }
 
+impl Observer for FitObserver<'_> {
+    fn step(&self, step: &Step) -> ControlFlow<()> {
+        self.events.send(Event::Step(self.scan, *step));
+        self.flow()
+    }
+}
+
 /// Carries out fits, unless they are cancelled, and sends their results as events. `closing` cancels
 /// all of them.
-pub(super) fn fit_all(jobs: Vec<FitJob>, depth: Depth, closing: &CancelFlag, events: &EventSender) {
-    for job in jobs {
+pub(super) fn fit_all(jobs: FitJobs, closing: &CancelFlag, events: &EventSender) {
+    for job in jobs.fits {
         let observer = FitObserver {
             scan: job.scan,
             cancel: [&job.cancel, closing],
@@ -47,20 +53,58 @@ pub(super) fn fit_all(jobs: Vec<FitJob>, depth: Depth, closing: &CancelFlag, eve
         if observer.is_cancelled() {
             continue;
         }
-        let result = catch_panics(|| {
-            let choice = ModelChoice::Given;
-            Report::observed(&job.measurements, &job.options, choice, depth, &observer).0
-        });
+        let result = catch_panics(|| fit(&job, jobs.depth, &observer));
         if observer.is_cancelled() {
             continue;
         }
+        let source = &job.measurements.source;
         events.send(match result {
-            Ok(report) => Event::Fitted(job.scan, Box::new(report)),
-            Err(error) => {
-                let source = &job.measurements.source;
-                Event::FitAborted(job.scan, format!("{source}: {error}"))
-            }
+            Ok(Ok(report)) => Event::Fitted(job.scan, Box::new(report)),
+            Ok(Err(error)) => Event::FitAborted(job.scan, error.to_string()),
+            Err(error) => Event::FitAborted(job.scan, format!("{source}: {error}")),
         });
     }
-    events.send(Event::FitsEnded);
+    events.send(Event::FitsEnded(jobs.run));
+}
+
+/// Fits a scan. Its parameters are sent before the analysis, which takes much longer than the fit.
+///
+/// # Errors
+///
+/// A table can no longer be read.
+fn fit(job: &FitJob, depth: Depth, observer: &FitObserver) -> Result<Report, ReadError> {
+    let measurements = match &job.table {
+        Some(table) => table.measurements()?,
+        None => Cow::Borrowed(&*job.measurements),
+    };
+    let report = |depth, observer: &dyn Observer| {
+        let choice = ModelChoice::Given;
+        let fitted = Report::observed(&measurements, &job.options, choice, depth, observer);
+        Report {
+            left_out: job.left_out.clone(),
+            ..fitted.0
+        }
+    };
+    if depth == Depth::Fit {
+        return Ok(report(depth, observer));
+    }
+    let found = report(Depth::Fit, observer);
+    if found.error.is_some() || observer.is_cancelled() {
+        return Ok(found);
+    }
+    let event = Event::Found(job.scan, Box::new(found));
+    observer.events.send(event);
+    Ok(report(depth, &AnalysisObserver(observer)))
+}
+
+/// Of the second fit only the analysis is reported: its stages are those of the first.
+struct AnalysisObserver<'a>(&'a FitObserver<'a>);
+
+impl Observer for AnalysisObserver<'_> {
+    fn step(&self, step: &Step) -> ControlFlow<()> {
+        if matches!(step.phase, Phase::Uncertainty | Phase::Assessment) {
+            return self.0.step(step);
+        }
+        self.0.flow()
+    }
 }

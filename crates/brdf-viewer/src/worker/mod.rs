@@ -13,10 +13,8 @@ use std::error::Error;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
-use brdf_fit::report::Depth;
-
 use crate::cancel::CancelFlag;
-use crate::job::{Event, FileJob, FitJob, Job};
+use crate::job::{Event, FileJob, FitJobs, Job};
 use panics::catch_panics;
 
 pub use events::EventSender;
@@ -24,7 +22,7 @@ pub use events::EventSender;
 /// The threads of the worker. Dropping it cancels the fits.
 pub struct Worker {
     files: Sender<FileJob>,
-    fits: Sender<(Vec<FitJob>, Depth)>,
+    fits: Sender<FitJobs>,
     events: EventSender,
     receiver: Receiver<Event>,
     closing: CancelFlag,
@@ -42,12 +40,12 @@ impl Worker {
                 answers.send(work_on_file(job));
             }
         });
-        let (fits, fit_jobs) = channel::<(Vec<FitJob>, Depth)>();
+        let (fits, fit_jobs) = channel::<FitJobs>();
         let closing = CancelFlag::default();
         let (answers, cancel) = (events.clone(), closing.clone());
         thread::spawn(move || {
-            for (jobs, depth) in fit_jobs {
-                fit::fit_all(jobs, depth, &cancel, &answers);
+            for jobs in fit_jobs {
+                fit::fit_all(jobs, &cancel, &answers);
             }
         });
         Self {
@@ -63,8 +61,8 @@ impl Worker {
     pub fn start(&self, job: Job) {
         // Sending cannot fail: the threads run until the queues are dropped with the worker.
         match job {
-            Job::Fit(jobs, depth) => {
-                let _ = self.fits.send((jobs, depth));
+            Job::Fit(jobs) => {
+                let _ = self.fits.send(jobs);
             }
             Job::File(job) => {
                 let _ = self.files.send(job);

@@ -103,11 +103,13 @@ fn options_of(report: &Report) -> ReadOptions {
 /// The scans of a file. A table is sampled at the directions of a goniometer, because it has no
 /// incidences of its own.
 fn read_scan(path: &Path, options: &ReadOptions) -> Result<Vec<Scan>, OpenError> {
-    let scans = LazyScan::open(path, options)?;
-    let plotted = scans.iter().map(LazyScan::plotted);
-    plotted
-        .map(|scan| Ok(Scan::new(scan?.into_owned())))
-        .collect()
+    let scans = LazyScan::open(path, options)?.into_iter();
+    let scan = |lazy: LazyScan| {
+        let mut scan = Scan::new(lazy.plotted()?.into_owned());
+        scan.table = Some(lazy).filter(LazyScan::is_in_file);
+        Ok(scan)
+    };
+    scans.map(scan).collect()
 }
 
 fn read_content(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<Scan>, OpenError> {
@@ -146,6 +148,7 @@ fn adopt_fit(scan: &mut Scan, document: &Document, file: &str) {
     let mut reports = document.reports.iter();
     let found = reports.find(|report| report.file == file && report.wavelength_um == wavelength);
     if let Some(report) = found {
+        scan.leave_out(report.left_out.iter().copied().collect());
         scan.adopt_fit(report.clone());
         scan.committed = scan.parameters;
     }

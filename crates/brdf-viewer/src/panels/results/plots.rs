@@ -1,81 +1,24 @@
-//! The panel at the bottom: the tables that the command line prints, and plots of the fit.
+//! Plots of the fit: E against iteration, the profile of E over k1, the hemispherical reflectance.
 
 use brdf_fit::Phase;
 use brdf_fit::ProfilePoint;
-use egui::{Color32, Panel, Rangef, RichText, Role, ScrollArea, Ui};
-use egui_plot::{AxisHints, HLine, Legend, Line, Plot, PlotPoints, Points, VLine};
+use brdf_fit::format::digits;
+use egui::{Color32, Rangef, Role, Ui};
+use egui_plot::{AxisHints, HLine, HoverPosition, Legend, Line, Plot, PlotPoints, Points, VLine};
 
-use crate::intent::Intent;
 use crate::plot::axis::Axis;
 use crate::state::State;
 use crate::state::convergence::ConvergencePoint;
-use crate::state::interface::ResultTab;
 use crate::state::sample::{Sample, Scan};
 use crate::theme;
 use crate::widgets::named;
 
-/// Draws the panel.
-pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
-    let height = ui.available_height();
-    let most = (height * 0.6).max(120.0);
-    let panel = Panel::bottom("results")
-        .resizable(true)
-        .default_size((0.25 * height).clamp(110.0, 240.0));
-    panel.size_range(90.0..=most).show(ui, |ui| {
-        // The height is set by the user and does not depend on the content.
-        ui.take_available_height();
-        ui.horizontal(|ui| {
-            for tab in ResultTab::ALL {
-                let on = state.interface.tab == tab;
-                if ui.selectable_label(on, tab.name()).clicked() {
-                    intents.push(Intent::Tab(tab));
-                }
-            }
-        });
-        let Some(sample) = state.active_sample() else {
-            ui.label("No sample is open.");
-            return;
-        };
-        match state.interface.tab {
-            ResultTab::Tables => show_tables(ui, sample.scan()),
-            ResultTab::Convergence => show_convergence(ui, convergence(state, sample)),
-            ResultTab::Profile => show_profile(ui, sample.scan()),
-            ResultTab::Reflectance => {
-                show_reflectance(ui, state.derived.reflectance(sample.scan_id()));
-            }
-        }
-    });
-}
-
-fn show_tables(ui: &mut Ui, scan: &Scan) {
-    let warning = ui.visuals().warn_fg_color;
-    if let Some(error) = &scan.fit_error {
-        ui.colored_label(warning, format!("The last fit failed: {error}"));
-    }
-    let Some(report) = &scan.last_fit else {
-        ui.label("Not fitted yet.");
-        return;
-    };
-    if scan.fit_error.is_some() {
-        ui.colored_label(warning, "The tables show the previous fit.");
-    }
-    if scan.current_fit().is_none() {
-        ui.colored_label(warning, "The parameters have changed since this fit.");
-    }
-    ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-        for section in report.sections() {
-            if !section.title.is_empty() {
-                ui.strong(section.title);
-            }
-            let text = RichText::new(section.text.trim_matches('\n')).monospace();
-            ui.add(egui::Label::new(text).extend());
-            ui.add_space(4.0);
-        }
-    });
-}
-
 /// A plot with named axes.
-fn result_plot<'a>(name: &str, [x, y]: [Axis; 2], [x_name, y_name]: [&str; 2]) -> Plot<'a> {
+pub(super) fn result_plot<'a>(
+    name: &str,
+    [x, y]: [Axis; 2],
+    [x_name, y_name]: [&str; 2],
+) -> Plot<'a> {
     let x_hints = AxisHints::new_x()
         .label(x_name)
         .label_spacing(LABEL_SPACING)
@@ -84,13 +27,25 @@ fn result_plot<'a>(name: &str, [x, y]: [Axis; 2], [x_name, y_name]: [&str; 2]) -
         .label(y_name)
         .min_thickness(60.0)
         .formatter(move |mark, range| y.label(mark, range));
+    let (x_text, y_text) = (x_name.to_owned(), y_name.to_owned());
     Plot::new(name.to_owned())
         .x_grid_spacer(move |input| x.horizontal_grid(&input))
         .y_grid_spacer(move |input| y.vertical_grid(&input))
         .custom_x_axes(vec![x_hints])
         .custom_y_axes(vec![y_hints])
-        .label_formatter(|_| None)
+        .label_formatter(move |position| match position {
+            HoverPosition::NearDataPoint {
+                plot_name,
+                position,
+                ..
+            } => {
+                let (at_x, at_y) = (digits(x.value(position.x)), digits(y.value(position.y)));
+                Some(format!("{plot_name}\n{x_text} {at_x}\n{y_text} {at_y}"))
+            }
+            HoverPosition::Elsewhere { .. } => None,
+        })
         .show_crosshair(false)
+        .allow_scroll(false)
 }
 
 /// Distances between grid lines along a horizontal axis, in points: below the first, lines have no
@@ -101,14 +56,14 @@ const LABEL_SPACING: Rangef = Rangef {
 };
 
 /// A line of one of the result plots.
-fn line<'a>(name: &str, points: Vec<[f64; 2]>, colour: Color32) -> Line<'a> {
+pub(super) fn line<'a>(name: &str, points: Vec<[f64; 2]>, colour: Color32) -> Line<'a> {
     Line::new(name.to_owned(), PlotPoints::from(points))
         .color(colour)
         .width(1.8)
 }
 
 /// The iterations of the current scan: of the running fit, or else of the last one.
-fn convergence<'a>(state: &'a State, sample: &'a Sample) -> &'a [ConvergencePoint] {
+pub(super) fn convergence<'a>(state: &'a State, sample: &'a Sample) -> &'a [ConvergencePoint] {
     let running = state.fit_run.as_ref().filter(|run| run.is_running());
     match running.filter(|run| run.scan == sample.scan_id()) {
         Some(run) => &run.points,
@@ -116,14 +71,16 @@ fn convergence<'a>(state: &'a State, sample: &'a Sample) -> &'a [ConvergencePoin
     }
 }
 
-fn show_convergence(ui: &mut Ui, convergence: &[ConvergencePoint]) {
+pub(super) fn show_convergence(ui: &mut Ui, convergence: &[ConvergencePoint]) {
     if convergence.is_empty() {
         ui.label("This wavelength has not been fitted yet.");
         return;
     }
     let ground = theme::ground(ui.ctx());
     let axes = [Axis::Linear, Axis::Logarithmic];
-    let plot = result_plot("convergence", axes, ["iteration", "E / %"]).legend(Legend::default());
+    let plot = result_plot("convergence", axes, ["iteration", "E, %"])
+        .x_grid_spacer(|input| Axis::integer_grid(&input))
+        .legend(Legend::default());
     let position =
         |p: &ConvergencePoint| Some([p.iteration as f64, Axis::Logarithmic.position(p.e_percent)?]);
     let response = plot.show(ui, |plot_ui| {
@@ -144,7 +101,7 @@ fn show_convergence(ui: &mut Ui, convergence: &[ConvergencePoint]) {
     );
 }
 
-fn show_profile(ui: &mut Ui, scan: &Scan) {
+pub(super) fn show_profile(ui: &mut Ui, scan: &Scan) {
     let fit = scan.last_fit.as_ref();
     let fit = fit.and_then(|report| report.fit.as_ref());
     let profile = fit.and_then(|fit| Some(&fit.global_check.as_ref()?.profile));
@@ -156,7 +113,7 @@ fn show_profile(ui: &mut Ui, scan: &Scan) {
     let point = |p: &ProfilePoint| Some([log(p.parameters.k1)?, log(100.0 * p.error)?]);
     let points: Vec<[f64; 2]> = profile.iter().filter_map(point).collect();
     let colour = theme::series_colour(0, theme::ground(ui.ctx()));
-    let plot = result_plot("profile", [Axis::Logarithmic; 2], ["k1", "lowest E / %"]);
+    let plot = result_plot("profile", [Axis::Logarithmic; 2], ["k1", "lowest E, %"]);
     let current = log(scan.parameters.values.k1);
     let weak = ui.visuals().weak_text_color();
     let response = plot.show(ui, |plot_ui| {
@@ -168,10 +125,10 @@ fn show_profile(ui: &mut Ui, scan: &Scan) {
     named(response.response, Role::Image, "plot of the profile of k1");
 }
 
-fn show_reflectance(ui: &mut Ui, reflectance: &[[f64; 2]]) {
+pub(super) fn show_reflectance(ui: &mut Ui, reflectance: &[[f64; 2]]) {
     let colour = theme::series_colour(0, theme::ground(ui.ctx()));
     let limit = Color32::from_rgb(0xd5, 0x5e, 0x00);
-    let names = ["incidence psi / deg", "rho"];
+    let names = ["incidence ψ, deg", "reflectance ρ"];
     let plot = result_plot("reflectance", [Axis::Linear; 2], names)
         .include_x(0.0)
         .include_x(90.0)

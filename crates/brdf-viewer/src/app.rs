@@ -6,14 +6,19 @@ use std::path::PathBuf;
 use eframe::egui;
 
 use crate::dialogs::Dialogs;
+use crate::fonts::FallbackFonts;
 use crate::intent::Intent;
 use crate::panels;
 use crate::plot;
 use crate::shortcuts;
+use crate::state::interface::Interface;
 use crate::state::saved::{SMALLEST_WINDOW, Settings};
 use crate::state::{Effect, State};
 use crate::theme;
 use crate::worker::Worker;
+
+/// In windows narrower than this, in points, not all panels are open at first.
+const NARROW_WINDOW: f32 = 1000.0;
 
 /// The application.
 pub struct Viewer {
@@ -23,6 +28,8 @@ pub struct Viewer {
     dialogs: Box<dyn Dialogs>,
     settings: Settings,
     when_opened: Vec<Intent>,
+    fonts: FallbackFonts,
+    is_first_frame: bool,
 }
 
 impl Viewer {
@@ -39,6 +46,8 @@ impl Viewer {
             dialogs,
             settings,
             when_opened: Vec::new(),
+            fonts: FallbackFonts::default(),
+            is_first_frame: true,
         }
     }
 
@@ -69,9 +78,17 @@ impl Viewer {
     /// Runs and draws a frame.
     pub fn frame(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
+        if std::mem::take(&mut self.is_first_frame) {
+            self.fold_panels(ctx.content_rect().width());
+        }
         self.take_events();
         self.state.system_dark = theme::system_is_dark(&ctx);
         theme::set(&ctx, self.state.interface.dark);
+        self.fonts.provide(&ctx, self.state.texts_of_files());
+        let regained_focus = |event: &egui::Event| *event == egui::Event::WindowFocused(true);
+        if ctx.input(|input| input.events.iter().any(regained_focus)) {
+            self.state.check_files();
+        }
         self.apply(self.keys_and_drops(&ctx));
         self.show_panels(ui);
         if !ctx.input(|input| input.pointer.any_down()) {
@@ -79,6 +96,15 @@ impl Viewer {
         }
         self.carry_out_effects(&ctx);
         self.save_settings(&ctx);
+    }
+
+    /// In a narrow window, of which the user has not chosen the panels, the plot has more than half of
+    /// the window: samples and results are folded to their buttons in the status line.
+    fn fold_panels(&mut self, width: f32) {
+        if width < NARROW_WINDOW && self.state.interface == Interface::default() {
+            self.state.interface.samples = false;
+            self.state.interface.results = false;
+        }
     }
 
     fn take_events(&mut self) {
@@ -148,9 +174,8 @@ impl Viewer {
                 state.apply_all(intents);
             },
         );
-        // The results were drawn before, from the old parameters: the frame is drawn again.
-        let interface = &self.state.interface;
-        if changed && interface.results && interface.tab.shows_current_parameters() {
+        // Results and card were drawn before, from the old parameters: the frame is drawn again.
+        if changed {
             ui.ctx().request_discard("parameters have changed");
         }
     }

@@ -81,6 +81,12 @@ pub enum Intent {
     CloseDialog,
     /// Remove a message, by its index.
     Dismiss(usize),
+    /// Remove all messages.
+    DismissAll,
+    /// Read the file of a sample again.
+    Reload(SampleId),
+    /// Close samples in spite of work that is not in a file.
+    CloseUnsaved(Vec<SampleId>),
 }
 
 /// An entry of a menu, with a key.

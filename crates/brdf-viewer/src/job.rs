@@ -13,7 +13,7 @@ use brdf_fit::{FitOptions, Measurements};
 
 use crate::cancel::CancelFlag;
 use crate::output_kind::{FigureFormat, OutputKind};
-use crate::state::id::ScanId;
+use crate::state::id::{SampleId, ScanId};
 use crate::state::parameters::EditedParameters;
 use crate::state::sample::{Opened, Sample};
 
@@ -73,8 +73,8 @@ pub enum Output {
     Figure(FigureFormat, Vec<FigureLayer>, View),
     /// Readings and theory; without readings, the theory at incidence angles in radians.
     Curves(Arc<Measurements>, EditedParameters, Vec<f64>),
-    /// Fits.
-    Fit(Vec<Arc<Report>>),
+    /// The fits of samples.
+    Fit(Vec<Arc<Report>>, Vec<SampleId>),
 }
 
 /// The data of a sample that a figure shows.
@@ -130,8 +130,8 @@ pub enum Event {
     FitAborted(ScanId, String),
     /// All fits of a run, by its number, have ended or were cancelled.
     FitsEnded(u64),
-    /// A file was written.
-    Written(PathBuf),
+    /// A file was written, and the samples whose fits it contains.
+    Written(PathBuf, Vec<SampleId>),
     /// A file could not be written, and the error message.
     WriteFailed(String),
 }

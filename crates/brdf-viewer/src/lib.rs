@@ -33,6 +33,7 @@
 pub mod app;
 pub mod cancel;
 pub mod dialogs;
+pub mod fonts;
 pub mod intent;
 pub mod job;
 pub mod output_kind;

@@ -109,7 +109,7 @@ impl Command {
             Self::Cancel => "Cancel fit",
             Self::Logarithmic => "Logarithmic BRDF axis",
             Self::TimesCosine => "BRDF times cos theta",
-            Self::Residuals => "Residuals",
+            Self::Residuals => "Residuals below the plot",
             Self::Together => "All incidences in one plot",
             Self::Panels => "One plot for each incidence",
             Self::Polar => "Polar plot",

@@ -1,21 +1,11 @@
 //! Helpers shared by panels and plots: accessible names, combo boxes and angles as text.
 
-use brdf_fit::Quality;
 use egui::{ComboBox, Response, Role, Ui, WidgetInfo};
 
 /// Sets the accessible name of a control that has no text of its own.
 pub(crate) fn named(response: Response, role: Role, name: &str) -> Response {
     response.widget_info(|| WidgetInfo::labeled(role, response.enabled(), name));
     response
-}
-
-/// The mark of a quality, which tells it without the colour.
-pub(crate) fn quality_mark(quality: Quality) -> &'static str {
-    match quality {
-        Quality::Good => "✔",
-        Quality::Fair => "~",
-        Quality::Poor => "✖",
-    }
 }
 
 /// An angle in degrees, rounded to 0.01° to remove the rounding error of the conversion.

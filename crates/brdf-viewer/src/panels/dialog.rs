@@ -5,6 +5,7 @@ use egui::{Context, Grid, Id, Key, Modal, TextEdit, Ui};
 use crate::intent::Intent;
 use crate::shortcuts::MENUS;
 use crate::state::State;
+use crate::state::id::SampleId;
 use crate::state::interface::Dialog;
 
 /// Draws the open dialog. `browse` is whether the system has file dialogs.
@@ -27,6 +28,7 @@ pub fn show(ctx: &Context, state: &State, browse: bool, intents: &mut Vec<Intent
                 );
             }
         }
+        Dialog::Close { samples } => show_close(ui, state, samples, intents),
         Dialog::About => show_about(ui, intents),
     });
     if modal.should_close() {
@@ -58,6 +60,29 @@ fn show_path(ui: &mut Ui, path: &str, verb: &str, browse: bool, intents: &mut Ve
             intents.push(Intent::Browse);
         }
         if ui.button("Cancel").clicked() {
+            intents.push(Intent::CloseDialog);
+        }
+    });
+}
+
+/// Asks whether samples are closed in spite of work that is not in a file.
+fn show_close(ui: &mut Ui, state: &State, samples: &[SampleId], intents: &mut Vec<Intent>) {
+    ui.heading("Close without saving?");
+    let unsaved = samples.iter().filter_map(|id| state.sample(*id));
+    let names: Vec<&str> = unsaved
+        .filter(|sample| sample.has_unsaved_work())
+        .map(|sample| sample.name.as_str())
+        .collect();
+    ui.label(format!(
+        "Fits or choices of readings are not saved in a file: {}. \"Save fit as JSON\" in the menu \
+         File keeps them.",
+        names.join(", ")
+    ));
+    ui.horizontal(|ui| {
+        if ui.button("Close without saving").clicked() {
+            intents.push(Intent::CloseUnsaved(samples.to_vec()));
+        }
+        if ui.button("Keep open").clicked() {
             intents.push(Intent::CloseDialog);
         }
     });

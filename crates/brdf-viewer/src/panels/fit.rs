@@ -20,11 +20,15 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     show_buttons(ui, state, intents);
     match &state.fit_run {
         Some(run) if run.is_running() => show_progress(ui, run, intents),
-        Some(run) => {
+        Some(run)
+            if state
+                .active_sample()
+                .is_some_and(|s| run.contains(s.scan_id())) =>
+        {
             ui.label(result_text(run));
         }
         // The height does not depend on whether there was a fit.
-        None => {
+        _ => {
             ui.label("");
         }
     }

@@ -15,6 +15,9 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         return;
     }
     Panel::top("messages").resizable(false).show(ui, |ui| {
+        if state.messages.len() > 1 && ui.button("Dismiss all").clicked() {
+            intents.push(Intent::DismissAll);
+        }
         ScrollArea::vertical()
             .max_height(MOST_HEIGHT)
             .min_scrolled_height(MOST_HEIGHT)

@@ -10,7 +10,6 @@ use crate::intent::{Command, Intent};
 use crate::state::State;
 use crate::state::sample::Sample;
 use crate::theme;
-use crate::widgets::quality_mark;
 
 /// Draws the card of the active sample.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -56,7 +55,7 @@ fn show_quality(
     let scan = sample.scan();
     match quality {
         Some(quality) => {
-            let text = format!("{} {quality}", quality_mark(quality));
+            let text = format!("{}: {quality}", quality.word());
             ui.add(Label::new(RichText::new(text).color(colour).strong()).wrap());
         }
         None if scan.reading_count() == 0 => {
@@ -86,6 +85,9 @@ fn show_quality(
         (None, _) if scan.reading_count() == 0 => "",
         (None, _) if waiting => "Fitting; the curves show the start values.",
         (None, _) => "Not fitted: the curves show the start values.",
+        (Some(report), None) if !scan.uses_readings_of(report) => {
+            "The choice of readings has changed since the fit."
+        }
         (Some(_), None) => "The parameters have changed since the fit.",
         _ => "",
     };
@@ -105,7 +107,8 @@ fn show_notes(ui: &mut Ui, sample: &Sample) {
     let scan = sample.scan();
     let warning = ui.visuals().warn_fg_color;
     if let Some(error) = &scan.fit_error {
-        ui.colored_label(warning, format!("The last fit failed: {error}"));
+        ui.colored_label(warning, "The last fit failed.")
+            .on_hover_text(error);
     }
     if scan.assumes_n() {
         let n = scan.parameters.values.n;

@@ -11,7 +11,7 @@ use crate::plot::items::mark_at;
 use crate::state::State;
 use crate::state::sample::Sample;
 use crate::theme;
-use crate::widgets::{named, quality_mark};
+use crate::widgets::named;
 
 /// Draws the panel.
 pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -55,6 +55,15 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
             });
         });
     });
+    if sample.has_changed_on_disk {
+        ui.horizontal(|ui| {
+            ui.colored_label(ui.visuals().warn_fg_color, "changed on disk");
+            let name = format!("reload {}", sample.name);
+            if named(ui.small_button("reload"), Role::Button, &name).clicked() {
+                intents.push(Intent::Reload(sample.id));
+            }
+        });
+    }
     if active {
         ui.indent("scan", |ui| show_scan(ui, state, sample, intents));
     }
@@ -64,7 +73,7 @@ fn show_sample(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<In
 fn show_quality(ui: &mut Ui, state: &State, sample: &Sample) {
     if let Some(quality) = result::quality(state, sample) {
         let colour = theme::quality_colour(quality, theme::ground(ui.ctx()));
-        let mark = RichText::new(quality_mark(quality)).color(colour).strong();
+        let mark = RichText::new(quality.word()).color(colour).strong();
         ui.label(mark).on_hover_text(quality.to_string());
     }
 }

@@ -1,13 +1,13 @@
 //! The wavelengths of a sample as a list: n, error and quality of each.
 
-use brdf_fit::format::{digits, two_digits};
-use brdf_fit::{Parameter, Quality};
-use egui::{Button, RichText, Role, ScrollArea, TextStyle, Ui};
+use brdf_fit::Quality;
+use brdf_fit::format::two_digits;
+use egui::{Button, Grid, RichText, Role, ScrollArea, Ui};
 
 use crate::intent::Intent;
 use crate::state::sample::{Sample, Scan};
 use crate::theme;
-use crate::widgets::{named, quality_mark};
+use crate::widgets::named;
 
 /// The largest height of the list in points.
 const MOST_HEIGHT: f32 = 130.0;
@@ -21,62 +21,56 @@ pub(super) fn show(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
         return;
     }
     ui.label(format!("{} wavelengths", sample.scans.len()));
-    ui.label(
-        RichText::new(row_text(["wavelength", "n", "rms %"]))
-            .monospace()
-            .weak()
-            .small(),
-    );
-    let height = ui.text_style_height(&TextStyle::Body) + 2.0;
+    let height = ui.spacing().interact_size.y;
     ScrollArea::vertical()
         .id_salt("wavelengths")
         .max_height(MOST_HEIGHT)
-        .show_rows(ui, height, sample.scans.len(), |ui, rows| {
-            for (i, scan) in sample
-                .scans
-                .iter()
-                .enumerate()
-                .take(rows.end)
-                .skip(rows.start)
-            {
-                show_row(ui, sample, i, scan, intents);
-            }
+        .show_rows(ui, height, sample.scans.len() + 1, |ui, rows| {
+            Grid::new("wavelengths")
+                .num_columns(4)
+                .spacing([8.0, 2.0])
+                .show(ui, |ui| {
+                    for row in rows {
+                        match row.checked_sub(1) {
+                            None => show_header(ui),
+                            Some(i) => show_row(ui, sample, i, intents),
+                        }
+                        ui.end_row();
+                    }
+                });
         });
 }
 
-fn show_row(ui: &mut Ui, sample: &Sample, i: usize, scan: &Scan, intents: &mut Vec<Intent>) {
-    let fit = scan
-        .last_fit
-        .as_ref()
-        .and_then(|report| report.fit.as_ref());
-    let n = digits(Parameter::N.of(&scan.parameters.values));
-    let rms = fit.map_or_else(|| "-".to_owned(), |fit| two_digits(fit.rms_percent()));
-    let wavelength = name(scan);
-    let mut text = RichText::new(row_text([&wavelength, &n, &rms]))
-        .monospace()
-        .small();
-    let quality = fit.map(Quality::of);
-    if let Some(quality) = quality {
-        let colour = theme::quality_colour(quality, theme::ground(ui.ctx()));
-        text = RichText::new(format!("{} {}", text.text(), quality_mark(quality)))
-            .monospace()
-            .small()
-            .color(colour);
-    }
-    let button = Button::selectable(sample.current == i, text);
-    let response = named(
-        ui.add(button),
-        Role::Button,
-        &format!("wavelength {wavelength}"),
-    );
-    let hint = quality.map_or_else(|| "not fitted".to_owned(), |quality| quality.to_string());
-    if response.on_hover_text(hint).clicked() {
-        intents.push(Intent::Wavelength(sample.id, i));
+fn show_header(ui: &mut Ui) {
+    for name in ["wavelength", "n", "rms %"] {
+        ui.weak(name);
     }
 }
 
-fn row_text([wavelength, n, rms]: [&str; 3]) -> String {
-    format!("{wavelength:<11}{n:>7}{rms:>7}")
+fn show_row(ui: &mut Ui, sample: &Sample, i: usize, intents: &mut Vec<Intent>) {
+    let scan = &sample.scans[i];
+    let wavelength = name(scan);
+    let button = ui.add(Button::selectable(sample.current == i, &wavelength));
+    let response = named(button, Role::Button, &format!("wavelength {wavelength}"));
+    if response.clicked() {
+        intents.push(Intent::Wavelength(sample.id, i));
+    }
+    ui.label(shortened(scan.parameters.values.n));
+    let report = scan.last_fit.as_ref();
+    let Some(fit) = report.and_then(|report| report.fit.as_ref()) else {
+        ui.weak("not fitted");
+        return;
+    };
+    ui.label(two_digits(fit.rms_percent()));
+    let quality = Quality::of(fit);
+    let colour = theme::quality_colour(quality, theme::ground(ui.ctx()));
+    let word = RichText::new(quality.word()).color(colour);
+    ui.label(word).on_hover_text(quality.to_string());
+}
+
+/// A refractive index with three decimals at most.
+fn shortened(n: f64) -> String {
+    ((n * 1000.0).round() / 1000.0).to_string()
 }
 
 fn name(scan: &Scan) -> String {

@@ -80,8 +80,7 @@ impl Axis {
             Self::Linear => linear_label(mark.value, mark.step_size),
             Self::Logarithmic => {
                 let decades = range.end() - range.start();
-                let is_decade = (mark.value - mark.value.round()).abs() < 1e-9;
-                if is_decade || decades < 1.5 {
+                if ticks::is_labelled(mark.value, decades) {
                     logarithmic_label(self.value(mark.value))
                 } else {
                     String::new()

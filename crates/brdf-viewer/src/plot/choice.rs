@@ -51,9 +51,11 @@ fn rectangle(response: &PlotResponse<()>) -> Option<Rect> {
     }
     let key = pointer.id.with("rectangle");
     let here = pointer.interact_pointer_pos()?;
+    // The drag is recognised after the pointer has moved; when it ends, its origin is forgotten.
+    let origin = pointer.ctx.input(|input| input.pointer.press_origin());
     let start = pointer.ctx.data_mut(|data| {
-        if pointer.drag_started() {
-            data.insert_temp(key, here);
+        if let Some(origin) = origin {
+            data.insert_temp(key, origin);
         }
         data.get_temp::<Pos2>(key)
     })?;

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use brdf_fit::plot::{Curve, Layout, MarkShape, Reading, Scale, value_range};
+use brdf_fit::plot::{Curve, MarkShape, Reading, value_range};
 use egui::Color32;
 
 use super::axis::Axis;
@@ -62,10 +62,7 @@ pub struct PlotContext<'a> {
 impl<'a> PlotContext<'a> {
     /// The context of a frame.
     pub fn new(state: &'a State, curves: &'a [DrawnCurve<'a>]) -> Self {
-        let scale = match state.view.layout {
-            Layout::Polar => Scale::Linear,
-            _ => state.view.scale,
-        };
+        let scale = state.view.scale;
         let all = curves.iter().map(|drawn| drawn.curve);
         let rms = residual_rms(curves.iter().map(|drawn| drawn.curve));
         Self {

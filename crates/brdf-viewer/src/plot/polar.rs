@@ -1,6 +1,6 @@
 //! The polar plot of the paper's figures: f_r as radius at the view angle.
 
-use brdf_fit::plot::{Reading, Theory, View};
+use brdf_fit::plot::{Reading, Scale, Theory, View};
 use egui::{Align2, Shape, Stroke, Ui, Vec2};
 use egui_plot::{Plot, PlotPoint, PlotTransform, Text};
 
@@ -11,16 +11,88 @@ use super::context::{DrawnCurve, PlotContext};
 use super::hover::show_values;
 use super::items::{self, Drawing};
 use super::navigation::navigate;
-use super::ticks::{linear_label, round_up};
+use super::ticks::{linear_label, logarithmic_label, round_up};
 
 /// The largest number of circles. There are at least three, except for the smallest numbers.
 const MOST_CIRCLES: f64 = 5.0;
 
-/// The position of a value at a view angle in degrees. The normal points upwards, and positive
-/// angles to the right.
-fn position(theta_deg: f64, value: f64) -> [f64; 2] {
+/// How values are distances from the centre.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Radius {
+    /// In proportion, up to the outermost circle, with a circle at each step.
+    Linear { outermost: f64, step: f64 },
+    /// By their logarithm: the exponents of ten at the centre and at the outermost circle.
+    Logarithmic { centre: f64, outermost: f64 },
+}
+
+impl Radius {
+    /// The radius for values in a range.
+    fn new((least, most): (f64, f64), scale: Scale) -> Self {
+        match scale {
+            Scale::Linear => {
+                let (outermost, step) = circles(most);
+                Self::Linear { outermost, step }
+            }
+            Scale::Logarithmic => {
+                let outermost = most.log10().ceil();
+                Self::Logarithmic {
+                    centre: least.log10().floor().min(outermost - 1.0),
+                    outermost,
+                }
+            }
+        }
+    }
+
+    /// The distance of a value from the centre; `None` where it has none. On a logarithmic axis, values
+    /// below that of the centre are at the centre.
+    fn of(self, value: f64) -> Option<f64> {
+        match self {
+            Self::Linear { .. } => (value >= 0.0).then_some(value),
+            Self::Logarithmic { centre, .. } => {
+                (value > 0.0).then(|| (value.log10() - centre).max(0.0))
+            }
+        }
+    }
+
+    /// The distance of the outermost circle.
+    fn outermost(self) -> f64 {
+        match self {
+            Self::Linear { outermost, .. } => outermost,
+            Self::Logarithmic { centre, outermost } => outermost - centre,
+        }
+    }
+
+    /// The values of the circles, with their labels.
+    fn circles(self) -> Vec<(f64, String)> {
+        match self {
+            Self::Linear { outermost, step } => {
+                let values = values(outermost, step);
+                values
+                    .map(|value| (value, linear_label(value, step)))
+                    .collect()
+            }
+            Self::Logarithmic { centre, outermost } => {
+                let decades = (outermost - centre) as u32;
+                let value = |i: u32| 10_f64.powf(centre + f64::from(i));
+                let values = (1..=decades).map(value);
+                values
+                    .map(|value| (value, logarithmic_label(value)))
+                    .collect()
+            }
+        }
+    }
+
+    /// The position of a value at a view angle in degrees; `None` if it has no radius.
+    fn position(self, theta_deg: f64, value: f64) -> Option<[f64; 2]> {
+        Some(position(theta_deg, self.of(value)?))
+    }
+}
+
+/// The position at a view angle in degrees and a distance from the centre. The normal points upwards,
+/// and positive angles to the right.
+fn position(theta_deg: f64, distance: f64) -> [f64; 2] {
     let theta = theta_deg.to_radians();
-    [value * theta.sin(), value * theta.cos()]
+    [distance * theta.sin(), distance * theta.cos()]
 }
 
 /// The radius of the outermost circle, and the step from circle to circle.
@@ -32,22 +104,23 @@ fn circles(largest: f64) -> (f64, f64) {
 /// Draws the polar plot.
 pub(super) fn show(ui: &mut Ui, context: &PlotContext) {
     let curves: Vec<&DrawnCurve> = context.curves.iter().collect();
-    let (radius, step) = circles(context.range.1);
     let view = &context.state.view;
-    let plot = empty_plot(context, ui.available_size(), radius);
+    let radius = Radius::new(context.range, view.scale);
+    let outermost = radius.outermost();
+    let plot = empty_plot(context, ui.available_size(), outermost);
     let plot = reset_on_demand(ui, context.state, "polar", plot);
     let colour = ui.visuals().weak_text_color();
     let home = [
-        [-1.12 * radius, 1.12 * radius],
-        [-0.16 * radius, 1.12 * radius],
+        [-1.12 * outermost, 1.12 * outermost],
+        [-0.16 * outermost, 1.12 * outermost],
     ];
     let response = plot.show(ui, |plot_ui| {
         navigate(plot_ui, home);
         let stroke = Stroke::new(1.0, colour.gamma_multiply(0.35));
         plot_ui.add(Drawing::new("grid".to_owned(), move |transform, shapes| {
-            grid(transform, radius, step, stroke, shapes);
+            grid(transform, radius, stroke, shapes);
         }));
-        for (name, [x, y], text) in labels(radius, step, view) {
+        for (name, [x, y], text) in labels(radius, view) {
             let text = Text::new(name, PlotPoint::new(x, y), text).color(colour);
             plot_ui.text(text.anchor(Align2::CENTER_CENTER));
         }
@@ -58,8 +131,10 @@ pub(super) fn show(ui: &mut Ui, context: &PlotContext) {
             ));
         }
     });
-    show_values(&response, view, &curves, position_at_radius);
-    let of_reading = |reading: &Reading| position_at_radius(reading.theta_deg, reading.value);
+    show_values(&response, view, &curves, |theta_deg, value| {
+        radius.position(theta_deg, value)
+    });
+    let of_reading = |reading: &Reading| radius.position(reading.theta_deg, reading.value);
     choose(context, &response, &curves, of_reading);
     describe(&response, "BRDF plot", &curves);
 }
@@ -83,72 +158,67 @@ fn empty_plot<'a>(context: &PlotContext, size: Vec2, radius: f64) -> Plot<'a> {
     })
 }
 
-/// The position of a value at a view angle in degrees; `None` if the value is negative.
-fn position_at_radius(theta_deg: f64, value: f64) -> Option<[f64; 2]> {
-    (value >= 0.0).then(|| position(theta_deg, value))
-}
-
 fn draw(
     transform: &PlotTransform,
     drawn: &DrawnCurve,
     view: &View,
-    radius: f64,
+    radius: Radius,
     shapes: &mut Vec<Shape>,
 ) {
     let (curve, colour) = (drawn.curve, drawn.colour);
     if let Some(mirror) = view.mirror_deg(curve.psi) {
-        let ends = [[0.0, 0.0], position(mirror, radius)];
+        let ends = [[0.0, 0.0], position(mirror, radius.outermost())];
         items::dashed(transform, ends, colour, shapes);
     }
-    items::ribbon(transform, curve.theory.iter().map(band), colour, shapes);
+    let bands = curve.theory.iter().map(|theory| band(theory, radius));
+    items::ribbon(transform, bands, colour, shapes);
     for reading in &curve.readings {
-        items::error_bar(transform, error_bar(reading), colour, shapes);
+        items::error_bar(transform, error_bar(reading, radius), colour, shapes);
     }
-    let at = |reading: &Reading| position_at_radius(reading.theta_deg, reading.value);
+    let at = |reading: &Reading| radius.position(reading.theta_deg, reading.value);
     items::used_and_left_out(transform, drawn, at, shapes);
-    let points = curve.theory.iter().map(|theory| {
-        let [x, y] = position(theory.theta_deg, theory.value);
-        (x, y)
+    let theory = |theory: &Theory| radius.position(theory.theta_deg, theory.value);
+    let points = curve.theory.iter().map(|of| {
+        let at = theory(of);
+        at.map_or((f64::NAN, f64::NAN), |[x, y]| (x, y))
     });
     let stroke = Stroke::new(1.8, colour);
     items::line(transform, Axis::Linear, points, stroke, shapes);
-    let ghost = |theory: &Theory| position_at_radius(theory.theta_deg, theory.value);
-    items::ghosts(transform, drawn, ghost, shapes);
+    items::ghosts(transform, drawn, theory, shapes);
 }
 
-/// The ends of the band at a point of the theory.
-fn band(theory: &Theory) -> Option<[[f64; 2]; 2]> {
+/// The ends of the band at a point of the theory, without its negative part.
+fn band(theory: &Theory, radius: Radius) -> Option<[[f64; 2]; 2]> {
     let sigma = theory.sigma?;
-    let ends = [theory.value - sigma, theory.value + sigma];
-    Some(ends.map(|value| position(theory.theta_deg, value.max(0.0))))
+    ends(theory.theta_deg, theory.value, sigma, radius)
 }
 
 /// The ends of the error bar of a reading, without its negative part.
-fn error_bar(reading: &Reading) -> Option<[[f64; 2]; 2]> {
+fn error_bar(reading: &Reading, radius: Radius) -> Option<[[f64; 2]; 2]> {
     let sigma = reading.sigma?;
-    let high = position_at_radius(reading.theta_deg, reading.value + sigma)?;
-    let low = position(reading.theta_deg, (reading.value - sigma).max(0.0));
-    Some([low, high])
+    ends(reading.theta_deg, reading.value, sigma, radius)
+}
+
+fn ends(theta_deg: f64, value: f64, sigma: f64, radius: Radius) -> Option<[[f64; 2]; 2]> {
+    let high = radius.position(theta_deg, value + sigma)?;
+    let low = radius.of(value - sigma).unwrap_or(0.0);
+    Some([position(theta_deg, low), high])
 }
 
 /// Half circles at round values, and rays at multiples of 30 deg.
-fn grid(
-    transform: &PlotTransform,
-    radius: f64,
-    step: f64,
-    stroke: Stroke,
-    shapes: &mut Vec<Shape>,
-) {
+fn grid(transform: &PlotTransform, radius: Radius, stroke: Stroke, shapes: &mut Vec<Shape>) {
     let mut line = |points: &mut dyn Iterator<Item = [f64; 2]>| {
         let points = points.map(|[x, y]| (x, y));
         items::line(transform, Axis::Linear, points, stroke, shapes);
     };
-    for value in values(radius, step) {
+    for (value, _) in radius.circles() {
+        let distance = radius.of(value).unwrap_or(0.0);
         let circle = (-90..=90).step_by(3);
-        line(&mut circle.map(|deg| position(f64::from(deg), value)));
+        line(&mut circle.map(|deg| position(f64::from(deg), distance)));
     }
     for deg in (-90..=90).step_by(30) {
-        line(&mut [[0.0, 0.0], position(f64::from(deg), radius)].into_iter());
+        let end = position(f64::from(deg), radius.outermost());
+        line(&mut [[0.0, 0.0], end].into_iter());
     }
 }
 
@@ -159,17 +229,19 @@ fn values(radius: f64, step: f64) -> impl Iterator<Item = f64> {
 }
 
 /// The labels of the grid and the name of the quantity: identifiers, positions and texts.
-fn labels(radius: f64, step: f64, view: &View) -> Vec<(String, [f64; 2], String)> {
+fn labels(radius: Radius, view: &View) -> Vec<(String, [f64; 2], String)> {
+    let outermost = radius.outermost();
     let angles = (-90..=90).step_by(30).map(|deg: i32| {
-        let at = position(f64::from(deg), 1.06 * radius);
+        let at = position(f64::from(deg), 1.06 * outermost);
         (format!("angle {deg}"), at, format!("{deg}°"))
     });
-    let radii = values(radius, step).enumerate().map(|(i, value)| {
-        let at = [value, -0.04 * radius];
-        (format!("radius {i}"), at, linear_label(value, step))
+    let radii = radius.circles().into_iter().enumerate();
+    let radii = radii.map(|(i, (value, label))| {
+        let at = [radius.of(value).unwrap_or(0.0), -0.04 * outermost];
+        (format!("radius {i}"), at, label)
     });
     let name = view.quantity.axis_name().to_owned();
-    let name = ("name".to_owned(), [0.0, -0.11 * radius], name);
+    let name = ("name".to_owned(), [0.0, -0.11 * outermost], name);
     angles.chain(radii).chain([name]).collect()
 }
 
@@ -188,5 +260,15 @@ mod tests {
             assert!((2..=5).contains(&values(radius, step).count()), "{largest}");
         }
         assert_eq!(circles(0.0).1, 0.2);
+    }
+
+    #[test]
+    fn a_logarithmic_radius_has_a_circle_for_each_decade() {
+        let radius = Radius::new((0.004, 0.7), Scale::Logarithmic);
+        assert_eq!(radius.outermost(), 3.0);
+        assert_eq!(radius.circles().len(), 3);
+        assert!((radius.of(0.1).unwrap() - 2.0).abs() < 1e-12);
+        assert_eq!(radius.of(1e-9), Some(0.0));
+        assert_eq!(radius.of(0.0), None);
     }
 }

@@ -59,6 +59,14 @@ pub fn logarithmic((low, high): (f64, f64)) -> Vec<Tick> {
     ticks
 }
 
+/// Whether a tick of a logarithmic axis has a label: powers of ten always, 2 and 5 times these over
+/// fewer than four decades, and all over less than a decade.
+pub fn is_labelled(position: f64, decades: f64) -> bool {
+    let leading = 10_f64.powf(position - (position + 1e-9).floor());
+    let is = |digit: f64| (leading - digit).abs() < 1e-6;
+    decades < 0.7 || is(1.0) || (decades < 4.0 && (is(2.0) || is(5.0)))
+}
+
 fn within_a_decade(low: f64, high: f64) -> Vec<Tick> {
     let spacing = (high - low) / 10.0;
     let (low, high) = (10_f64.powf(low), 10_f64.powf(high));

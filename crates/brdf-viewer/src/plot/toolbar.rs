@@ -56,7 +56,7 @@ fn show_options(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         (Command::Residuals, "residuals"),
     ] {
         let mut on = state.is_on(command) == Some(true);
-        let enabled = is_cartesian || command == Command::TimesCosine;
+        let enabled = is_cartesian || command != Command::Residuals;
         let check_box = ui.add_enabled(enabled, Checkbox::new(&mut on, name));
         if check_box.on_hover_text(command.name()).changed() {
             intents.push(Intent::Command(command));
@@ -210,7 +210,7 @@ fn not_shown(state: &State) -> String {
         ));
     }
     let (count, reason) = match (state.view.layout, state.view.scale) {
-        (Layout::Polar, _) => (counts.negative, "< 0 cannot be shown as a radius"),
+        (Layout::Polar, Scale::Linear) => (counts.negative, "< 0 cannot be shown as a radius"),
         (_, Scale::Logarithmic) => (
             counts.not_positive,
             "<= 0 cannot be shown on a logarithmic axis",

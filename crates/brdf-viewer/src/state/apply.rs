@@ -21,7 +21,7 @@ impl State {
             Intent::Open(paths) => self.open(paths),
             Intent::OpenBytes(name, bytes) => self.open_bytes(name, bytes),
             Intent::OpenBuiltIn(entry) => self.open_built_in(entry),
-            Intent::Close(id) => self.close(id),
+            Intent::Close(id) => self.ask_to_close(vec![id]),
             Intent::ShowSample(id, visible) => self.change(id, |s| s.visible = visible),
             Intent::Activate(id) => self.activate(id),
             Intent::Wavelength(id, wavelength) => self.select_wavelength(id, wavelength),
@@ -61,6 +61,14 @@ impl State {
             Intent::Confirm => self.confirm(),
             Intent::Browse => self.browse(),
             Intent::CloseDialog => self.dialog = None,
+            Intent::DismissAll => self.messages.clear(),
+            Intent::Reload(id) => self.reload(id),
+            Intent::CloseUnsaved(samples) => {
+                self.dialog = None;
+                for id in samples {
+                    self.close(id);
+                }
+            }
             Intent::Dismiss(i) => {
                 if i < self.messages.len() {
                     self.messages.remove(i);
@@ -91,7 +99,16 @@ impl State {
             Event::Fitted(scan, report) => self.take_report(scan, *report),
             Event::FitAborted(scan, error) => self.take_fit_error(scan, error),
             Event::FitsEnded(run) => self.end_run(run),
-            Event::Written(path) => self.status = format!("{} written", path.display()),
+            Event::Written(path, saved) => {
+                for id in saved {
+                    self.change(id, |sample| {
+                        for scan in &mut sample.scans {
+                            scan.has_unsaved_work = false;
+                        }
+                    });
+                }
+                self.status = format!("{} written", path.display());
+            }
             Event::WriteFailed(error) => self.report_error(error),
         }
     }

@@ -20,14 +20,12 @@ impl State {
             Command::OpenPath => self.ask_path(),
             Command::Close => {
                 if let Some(id) = self.active {
-                    self.close(id);
+                    self.ask_to_close(vec![id]);
                 }
             }
             Command::CloseAll => {
                 let all: Vec<SampleId> = self.samples.iter().map(|sample| sample.id).collect();
-                for id in all {
-                    self.close(id);
-                }
+                self.ask_to_close(all);
             }
             Command::Export(kind) => {
                 let path = self.suggested_path(kind);

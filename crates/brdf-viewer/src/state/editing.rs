@@ -132,6 +132,7 @@ impl State {
         scan.leave_out(readings);
         let after = scan.left_out().clone();
         if before != after {
+            scan.has_unsaved_work = true;
             self.history.push(vec![Change {
                 scan: id,
                 before: Edited::LeftOut(before),

@@ -35,6 +35,12 @@ enum ExportError {
         total: usize,
         open: usize,
     },
+    /// The extension is that of another kind of file.
+    #[error(
+        "{}: the {} is written as .{}: expected a path that ends with it",
+        .0.display(), .1.name(), .1.extension()
+    )]
+    Extension(PathBuf, OutputKind),
     #[error("no sample is open")]
     NoSample,
     #[error("the figure would be empty: no incidence is selected")]
@@ -69,7 +75,7 @@ impl State {
             Some(Dialog::Export { kind, path }) if !path.trim().is_empty() => {
                 self.write(kind, PathBuf::from(path.trim()));
             }
-            Some(Dialog::About) | None => {}
+            Some(Dialog::About | Dialog::Close { .. }) | None => {}
             without_path => self.dialog = without_path,
         }
     }
@@ -100,7 +106,11 @@ impl State {
         PathBuf::from(format!("{name}.{}", kind.extension()))
     }
 
-    pub(super) fn write(&mut self, kind: OutputKind, path: PathBuf) {
+    /// Writes a file. A path without an extension gets that of the kind.
+    pub(super) fn write(&mut self, kind: OutputKind, mut path: PathBuf) {
+        if path.extension().is_none() {
+            path.set_extension(kind.extension());
+        }
         let output = self.check_target(kind, &path);
         match output.and_then(|()| self.output(kind, &path)) {
             Ok(output) => self.start(Job::File(FileJob::Write(path, output))),
@@ -112,6 +122,11 @@ impl State {
     fn check_target(&self, kind: OutputKind, path: &Path) -> Result<(), ExportError> {
         let target = resolved(path);
         let path = path.to_owned();
+        let expected = kind.extension();
+        let has_expected = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case(expected);
+        if !path.extension().is_some_and(has_expected) {
+            return Err(ExportError::Extension(path, kind));
+        }
         let mut samples = self.samples.iter();
         if samples.any(|sample| sample.has_readings_from(&target)) {
             return Err(ExportError::OpenScan(path, kind));
@@ -165,8 +180,10 @@ impl State {
                 // this document are written as well.
                 let samples = self.samples.iter();
                 let samples = samples.filter(|s| s.id == sample.id || s.was_opened_from(&target));
+                let ids = samples.clone().map(|sample| sample.id).collect();
                 let scans = samples.flat_map(|sample: &Sample| &sample.scans);
-                Output::Fit(scans.filter_map(|scan| scan.last_fit.clone()).collect())
+                let reports = scans.filter_map(|scan| scan.last_fit.clone()).collect();
+                Output::Fit(reports, ids)
             }
         })
     }

@@ -78,6 +78,11 @@ impl FitRun {
         all.map(|queued| (queued.scan, queued.cancel.clone()))
     }
 
+    /// Whether the run fits a scan, or has fitted it.
+    pub fn contains(&self, scan: ScanId) -> bool {
+        self.queue.iter().any(|queued| queued.scan == scan)
+    }
+
     /// Whether the fit of a scan has not ended.
     pub fn is_waiting_for(&self, scan: ScanId) -> bool {
         let mut queue = self.queue.iter();

@@ -142,6 +142,7 @@ impl State {
             return;
         };
         if !automatic {
+            scan.has_unsaved_work = true;
             scan.adopt_fit(report);
             let change = scan.commit(id);
             self.history.push(change.into_iter().collect());

@@ -4,6 +4,7 @@ use brdf_fit::Parameter;
 use brdf_fit::plot::Reading;
 use serde::{Deserialize, Serialize};
 
+use super::id::SampleId;
 use crate::output_kind::OutputKind;
 
 /// A tab of the results.
@@ -42,11 +43,6 @@ impl ResultTab {
         Self::Convergence,
         Self::Report,
     ];
-
-    /// Whether the tab depends on the current parameters, and not only on the last fit.
-    pub fn shows_current_parameters(self) -> bool {
-        matches!(self, Self::Profile | Self::Reflectance | Self::Residuals)
-    }
 
     /// The title.
     pub fn name(self) -> &'static str {
@@ -150,6 +146,11 @@ pub enum Dialog {
         kind: OutputKind,
         /// The path as entered so far.
         path: String,
+    },
+    /// Asks whether samples are closed in spite of work that is not in a file.
+    Close {
+        /// The samples.
+        samples: Vec<SampleId>,
     },
     /// Shows the version and the keys.
     About,

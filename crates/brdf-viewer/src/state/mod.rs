@@ -107,6 +107,8 @@ pub struct State {
     next_run: u64,
     /// The opened scans that are to be fitted.
     to_fit: Vec<ScanId>,
+    /// The sources that are being opened again, with what was set of them.
+    restoring: Vec<Reopened>,
 }
 
 impl State {
@@ -223,6 +225,15 @@ impl State {
         errors.map(|message| message.text.clone()).collect()
     }
 
+    /// The texts that come from files and their names, in any script.
+    pub fn texts_of_files(&self) -> impl Iterator<Item = &str> {
+        let samples = self.samples.iter();
+        let of_samples = samples.flat_map(|sample| [&*sample.source, &*sample.description]);
+        let messages = self.messages.iter().map(|message| &*message.text);
+        let recent = self.recent.iter().filter_map(|path| path.to_str());
+        of_samples.chain(messages).chain(recent)
+    }
+
     /// Shows an error message.
     pub fn report_error(&mut self, text: impl Into<String>) {
         self.push_message(Severity::Error, text.into());
@@ -234,7 +245,10 @@ impl State {
     }
 
     fn push_message(&mut self, severity: Severity, text: String) {
-        self.messages.push(Message { severity, text });
+        let message = Message { severity, text };
+        // The same message is told once, as the latest.
+        self.messages.retain(|known| *known != message);
+        self.messages.push(message);
         if self.messages.len() > MOST_MESSAGES {
             self.messages.remove(0);
         }

@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use brdf_fit::Convention;
 use brdf_fit::plot::Scale;
 
 use super::id::SampleId;
+use super::interface::Dialog;
 use super::sample::{Opened, Sample};
-use super::saved::{MOST_RECENT, Reopened};
+use super::saved::{MOST_RECENT, Reopened, SavedSample};
 use super::{State, built_in};
 use crate::job::{FileJob, Job};
 
@@ -19,8 +21,56 @@ impl State {
     pub(super) fn open(&mut self, paths: Vec<PathBuf>) {
         for path in paths {
             let path = std::path::absolute(&path).unwrap_or(path);
-            self.start(Job::File(FileJob::Open(path, self.convention)));
+            match self.opened_from(&path) {
+                None => self.start(Job::File(FileJob::Open(path, self.convention))),
+                Some(id) if self.sample(id).is_some_and(|s| s.has_changed_on_disk) => {
+                    self.reload(id);
+                }
+                Some(id) => {
+                    self.activate(id);
+                    self.status = format!("{} is open already", path.display());
+                }
+            }
         }
+    }
+
+    /// The sample that was opened from a file in the current convention.
+    fn opened_from(&mut self, path: &Path) -> Option<SampleId> {
+        let path = brdf_fit::output::resolved(path);
+        let convention = self.convention;
+        let mut samples = self.samples.iter_mut();
+        let found = samples
+            .find(|sample| sample.was_opened_from(&path) && sample.convention == convention)?;
+        found.check_file();
+        Some(found.id)
+    }
+
+    /// Notes which files have changed since they were opened.
+    pub fn check_files(&mut self) {
+        for sample in &mut self.samples {
+            sample.check_file();
+        }
+    }
+
+    /// Reads the file of a sample again. Model, parameters and choice of readings are kept.
+    pub(super) fn reload(&mut self, id: SampleId) {
+        let Some(sample) = self.sample(id) else {
+            return;
+        };
+        let path = PathBuf::from(&sample.source);
+        let convention = sample.convention;
+        let source = sample.source.clone();
+        let of_source: Vec<Sample> = self
+            .samples
+            .iter()
+            .filter(|sample| sample.source == source)
+            .cloned()
+            .collect();
+        self.restoring.extend(Reopened::all(&of_source));
+        for sample in of_source {
+            self.close(sample.id);
+        }
+        self.start(Job::File(FileJob::Open(path, convention)));
     }
 
     pub(super) fn open_bytes(&mut self, name: String, bytes: Vec<u8>) {
@@ -41,6 +91,7 @@ impl State {
 
     /// Opens a source of the last session, in the same angular convention.
     pub fn reopen(&mut self, source: &Reopened) {
+        self.restoring.push(source.clone());
         if let Some(entry) = built_in::entry_of(&source.source) {
             self.open_built_in(entry);
         } else {
@@ -55,6 +106,11 @@ impl State {
         let count = all.len();
         for opened in all {
             self.add(opened, count);
+        }
+        // What remains was not found in the file again.
+        if let Some(path) = &file {
+            let source = path.display().to_string();
+            self.restoring.retain(|reopened| reopened.source != source);
         }
         if let Some(path) = file {
             self.add_to_recent(path);
@@ -73,6 +129,11 @@ impl State {
         self.status = format!("{} opened", opened.source);
         let mut sample = Sample::new(id, opened, family.unwrap_or(0), samples_in_source);
         sample.name = self.unique_name(&sample.name);
+        sample.convention = self.convention;
+        if let Some((saved, convention)) = self.take_saved(&sample.source) {
+            sample.convention = convention;
+            saved.restore(&mut sample);
+        }
         self.samples.push(sample);
         self.zoom_resets += 1;
         self.activate(id);
@@ -81,10 +142,28 @@ impl State {
 
     /// Chooses a logarithmic axis where the readings of a new sample span many decades.
     fn choose_scale(&mut self, opened: &[Opened]) {
+        let is_restored = |opened: &Opened| {
+            let mut restoring = self.restoring.iter();
+            restoring.any(|reopened| reopened.source == opened.source)
+        };
+        if opened.iter().any(is_restored) {
+            return;
+        }
         let mut scans = opened.iter().flat_map(|opened| &opened.scans);
         if scans.any(|scan| scan.dynamic_range() > LARGE_RANGE) {
             self.view.scale = Scale::Logarithmic;
         }
+    }
+
+    /// What was saved of the next sample of a source that is opened again, and its convention.
+    fn take_saved(&mut self, source: &str) -> Option<(SavedSample, Convention)> {
+        let mut restoring = self.restoring.iter_mut();
+        let found = restoring.find(|reopened| reopened.source == source)?;
+        let convention = found.convention;
+        let saved = (!found.samples.is_empty()).then(|| found.samples.remove(0));
+        self.restoring
+            .retain(|reopened| !reopened.samples.is_empty());
+        Some((saved?, convention))
     }
 
     /// A name that no other sample has: "a", "a (2)".
@@ -93,6 +172,18 @@ impl State {
         let numbered = (2..).map(|number| format!("{name} ({number})"));
         let mut names = std::iter::once(name.to_owned()).chain(numbered);
         names.find(|name| !is_taken(name)).unwrap_or_default()
+    }
+
+    /// Closes samples, and asks before if a fit or a choice of readings would be lost.
+    pub(super) fn ask_to_close(&mut self, samples: Vec<SampleId>) {
+        let is_unsaved = |id: &SampleId| self.sample(*id).is_some_and(Sample::has_unsaved_work);
+        if samples.iter().any(is_unsaved) {
+            self.dialog = Some(Dialog::Close { samples });
+            return;
+        }
+        for id in samples {
+            self.close(id);
+        }
     }
 
     pub(super) fn close(&mut self, id: SampleId) {

@@ -3,9 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::SystemTime;
 
 use brdf_core::ModelParameters;
 use brdf_core::published::PublishedSample;
+use brdf_fit::Convention;
 use brdf_fit::FitProblem;
 use brdf_fit::output::resolved;
 use brdf_fit::read::LazyScan;
@@ -51,6 +53,12 @@ pub struct Sample {
     pub file: Option<PathBuf>,
     /// The number of samples that were opened from the same source.
     pub samples_in_source: usize,
+    /// When the file of the readings was last changed, as it was opened.
+    pub modified: Option<SystemTime>,
+    /// Whether the file has changed since.
+    pub has_changed_on_disk: bool,
+    /// The angular convention that was asked for when it was opened.
+    pub convention: Convention,
     /// The description given in the file.
     pub description: String,
     /// The colour family.
@@ -91,6 +99,8 @@ pub struct Scan {
     pub convergence: Vec<ConvergencePoint>,
     /// The error message of a later fit, if that has failed.
     pub fit_error: Option<String>,
+    /// Whether a fit that the user has asked for, or a choice of readings, is not in a file.
+    pub has_unsaved_work: bool,
 }
 
 /// One incidence of a scan.
@@ -176,6 +186,7 @@ impl Scan {
             last_fit: None,
             convergence: Vec::new(),
             fit_error: None,
+            has_unsaved_work: false,
         }
     }
 
@@ -211,6 +222,13 @@ impl Scan {
             && self.measurements.refractive_index.is_none()
             && !self.parameters.model.frees(Parameter::N)
             && self.parameters.values.n == brdf_fit::DEFAULT_N
+    }
+
+    /// The indices of the incidences that are hidden.
+    pub fn hidden_incidences(&self) -> BTreeSet<usize> {
+        let all = self.incidences.iter().enumerate();
+        let hidden = all.filter(|(_, incidence)| !incidence.visible);
+        hidden.map(|(i, _)| i).collect()
     }
 
     /// The indices of the readings that the user has left out.
@@ -299,13 +317,18 @@ impl Scan {
         }
     }
 
-    /// The last fit, if the current parameters are those of the fit.
+    /// The last fit, if the current parameters and the choice of readings are those of the fit.
     pub fn current_fit(&self) -> Option<&Arc<Report>> {
         let report = self.last_fit.as_ref()?;
         let fit = report.fit.as_ref()?;
         let is_unchanged =
             fit.model() == self.parameters.model && fit.at() == self.parameters.values;
-        is_unchanged.then_some(report)
+        (is_unchanged && self.uses_readings_of(report)).then_some(report)
+    }
+
+    /// Whether the readings that are used are those of a fit.
+    pub fn uses_readings_of(&self, report: &Report) -> bool {
+        self.left_out.iter().eq(&report.left_out)
     }
 
     /// The visible incidence angles, in radians.
@@ -331,6 +354,9 @@ impl Sample {
             name: short_name(name),
             description: description.unwrap_or_default().to_owned(),
             source: opened.source,
+            convention: Convention::default(),
+            modified: opened.file.as_deref().and_then(modified),
+            has_changed_on_disk: false,
             file: opened.file,
             samples_in_source,
             family,
@@ -338,6 +364,17 @@ impl Sample {
             scans: opened.scans,
             current: 0,
         }
+    }
+
+    /// Whether a fit that the user has asked for, or a choice of readings, is not in a file.
+    pub fn has_unsaved_work(&self) -> bool {
+        self.scans.iter().any(|scan| scan.has_unsaved_work)
+    }
+
+    /// Notes whether the file of the readings has changed since it was opened.
+    pub fn check_file(&mut self) {
+        let now = self.file.as_deref().and_then(modified);
+        self.has_changed_on_disk = now.is_some() && now != self.modified;
     }
 
     /// Whether the readings come from the file at a resolved path.
@@ -383,6 +420,11 @@ impl Sample {
             wavelength,
         }
     }
+}
+
+/// When a file was last changed.
+fn modified(file: &Path) -> Option<SystemTime> {
+    file.metadata().ok()?.modified().ok()
 }
 
 /// The name of a row of Table 1.

@@ -1,15 +1,18 @@
 //! The settings saved between sessions.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use brdf_fit::Convention;
+use brdf_core::ModelParameters;
 use brdf_fit::output::{WriteError, write_file};
 use brdf_fit::plot::View;
+use brdf_fit::{Convention, Model};
 use serde::{Deserialize, Serialize};
 
 use super::fit_settings::FitSettings;
 use super::interface::Interface;
-use super::sample::Sample;
+use super::parameters::EditedParameters;
+use super::sample::{Sample, Scan};
 
 /// Version of the file format.
 const VERSION: u32 = 1;
@@ -45,13 +48,45 @@ pub struct Saved {
     pub window: [f32; 2],
 }
 
-/// The source of a sample that was open.
+/// The source of a sample that was open, and what the user has set of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reopened {
     /// The path of a file, or the name of a built-in sample.
     pub source: String,
     /// The angular convention in which it was read.
     pub convention: Convention,
+    /// The samples of the source, in their order.
+    #[serde(default)]
+    pub samples: Vec<SavedSample>,
+}
+
+/// What the user has set of a sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SavedSample {
+    /// The index of the wavelength that is shown.
+    pub wavelength: usize,
+    /// Whether the sample is shown.
+    pub visible: bool,
+    /// The scans that differ from a newly opened one, by the index of their wavelength.
+    pub scans: Vec<(usize, SavedScan)>,
+}
+
+/// What the user has set of a scan. The fit itself is made again: the same readings, model and settings
+/// give the same numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SavedScan {
+    /// The model.
+    pub model: Model,
+    /// The values of its parameters.
+    pub values: ModelParameters,
+    /// The parameters that are fixed.
+    pub fixed: [bool; 5],
+    /// Whether the values were those of the fit.
+    pub fitted: bool,
+    /// The indices of the readings that are left out.
+    pub left_out: BTreeSet<usize>,
+    /// The indices of the hidden incidences.
+    pub hidden: BTreeSet<usize>,
 }
 
 impl Reopened {
@@ -59,16 +94,87 @@ impl Reopened {
     pub fn all(samples: &[Sample]) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
         for sample in samples {
+            let saved = SavedSample::of(sample);
             // A fit of several scans is one source.
-            if sample.samples_in_source > 1 && all.iter().any(|one| one.source == sample.source) {
+            let same =
+                |one: &&mut Self| sample.samples_in_source > 1 && one.source == sample.source;
+            if let Some(one) = all.iter_mut().find(same) {
+                one.samples.push(saved);
                 continue;
             }
             all.push(Self {
                 source: sample.source.clone(),
                 convention: sample.scan().measurements.convention,
+                samples: vec![saved],
             });
         }
         all
+    }
+}
+
+impl SavedSample {
+    fn of(sample: &Sample) -> Self {
+        let scans = sample.scans.iter().enumerate();
+        let saved = scans.filter_map(|(i, scan)| Some((i, SavedScan::of(scan)?)));
+        Self {
+            wavelength: sample.current,
+            visible: sample.visible,
+            scans: saved.collect(),
+        }
+    }
+
+    /// Sets a sample that was opened again as it was. What does not fit to it, because the file has
+    /// changed, is left out.
+    pub fn restore(&self, sample: &mut Sample) {
+        sample.visible = self.visible;
+        if self.wavelength < sample.scans.len() {
+            sample.current = self.wavelength;
+        }
+        for (i, saved) in &self.scans {
+            if let Some(scan) = sample.scans.get_mut(*i) {
+                saved.restore(scan);
+            }
+        }
+    }
+}
+
+impl SavedScan {
+    fn of(scan: &Scan) -> Option<Self> {
+        let saved = Self {
+            model: scan.parameters.model,
+            values: scan.parameters.values,
+            fixed: scan.parameters.fixed,
+            fitted: scan.current_fit().is_some(),
+            left_out: scan.left_out().clone(),
+            hidden: scan.hidden_incidences(),
+        };
+        let differs = scan.parameters.model != scan.initial.model
+            || scan.parameters.fixed != scan.initial.fixed
+            || scan.is_edited()
+            || !saved.left_out.is_empty()
+            || !saved.hidden.is_empty();
+        differs.then_some(saved)
+    }
+
+    fn restore(&self, scan: &mut Scan) {
+        let restored = EditedParameters {
+            model: self.model,
+            values: self.values,
+            fixed: self.fixed,
+        };
+        scan.leave_out(self.left_out.clone());
+        for (i, incidence) in scan.incidences.iter_mut().enumerate() {
+            incidence.visible = !self.hidden.contains(&i);
+        }
+        if restored.brdf().is_none() {
+            return;
+        }
+        scan.parameters = restored;
+        scan.committed = restored;
+        // The fit that follows replaces parameters that were fitted before, and keeps edited ones.
+        if self.fitted && scan.last_fit.is_none() {
+            scan.initial = restored;
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 
 use crate::cancel::CancelFlag;
-use crate::job::{Event, FileJob, FitJobs, Job};
+use crate::job::{Event, FileJob, FitJobs, Job, Output};
 use panics::catch_panics;
 
 pub use events::EventSender;
@@ -100,7 +100,13 @@ fn work_on_file(job: FileJob) -> Event {
             }
         }
         FileJob::Write(path, output) => match run(|| write::write(&path, &output)) {
-            Ok(()) => Event::Written(path),
+            Ok(()) => {
+                let saved = match output {
+                    Output::Fit(_, samples) => samples,
+                    _ => Vec::new(),
+                };
+                Event::Written(path, saved)
+            }
             Err(error) => Event::WriteFailed(error.to_string()),
         },
     }

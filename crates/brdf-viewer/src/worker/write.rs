@@ -62,7 +62,7 @@ pub(super) fn write(path: &Path, output: &Output) -> Result<(), WriteError> {
     let bytes = match output {
         Output::Figure(format, layers, view) => figure(*format, layers, view)?,
         Output::Curves(measurements, parameters, psi) => curves(measurements, parameters, psi)?,
-        Output::Fit(reports) => fits(reports)?,
+        Output::Fit(reports, _) => fits(reports)?,
     };
     write_file(path, |writer| writer.write_all(&bytes))?;
     Ok(())

@@ -13,16 +13,17 @@ use egui_kittest::kittest::Queryable as _;
 fn ready(command: Command) -> Window {
     let mut window = with_z307();
     if command != Command::FitAll {
-        click(&mut window, "Both stages");
+        click(&mut window, "fit both stages");
         type_number(&mut window, "k1", "0.4");
     }
     match command {
         Command::Redo => menu(&mut window, "Edit", "Undo"),
+        Command::UnpinAll => menu(&mut window, "Edit", "Pin curves"),
         Command::SystemTheme => window.state_mut().state.interface.dark = Some(true),
         // A run that does not end by itself, because the worker does not know it.
         Command::Cancel => {
             let scan = window.state().state.active_sample().unwrap().scan_id();
-            window.state_mut().state.fit_run = FitRun::new(&[scan]);
+            window.state_mut().state.fit_run = FitRun::new(0, false, &[scan]);
         }
         _ => {}
     }
@@ -35,7 +36,10 @@ fn effect(command: Command, window: &Window) -> bool {
     let state = &window.state().state;
     match command {
         Command::Open | Command::OpenPath => matches!(state.dialog, Some(Dialog::Open { .. })),
-        Command::Close | Command::CloseAll => state.samples.is_empty(),
+        // The fit is not in a file.
+        Command::Close | Command::CloseAll => matches!(state.dialog, Some(Dialog::Close { .. })),
+        Command::Pin => state.ghosts.len() == 1,
+        Command::UnpinAll => state.ghosts.is_empty(),
         Command::Export(kind) => {
             matches!(&state.dialog, Some(Dialog::Export { kind: asked, .. }) if *asked == kind)
         }
@@ -181,8 +185,8 @@ fn side_panels_are_hidden() {
     for name in ["samples", "parameters", "results"] {
         click(&mut window, name);
     }
-    assert!(window.query_by_label("Both stages").is_none());
-    assert!(window.query_by_label("Tables").is_none());
+    assert!(window.query_by_label("fit both stages").is_none());
+    assert!(window.query_by_label("Summary").is_none());
     let wide = window.get_by_label("BRDF plot").rect().width();
     assert!(wide > 1000.0, "{wide}");
 }

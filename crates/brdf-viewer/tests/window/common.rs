@@ -67,6 +67,8 @@ pub(crate) fn window_with(
         .build_eframe(|creation| {
             let mut viewer = Viewer::new(&creation.egui_ctx, Box::new(dialogs), settings);
             viewer.state.interface.dark = Some(false);
+            // Most tests start from a scan that is not fitted.
+            viewer.state.fit_settings.on_opening = false;
             viewer
         });
     settle(&mut window);

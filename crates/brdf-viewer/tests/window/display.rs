@@ -90,7 +90,7 @@ fn another_plane_than_the_plane_of_incidence_is_shown() {
     drop_file(&mut window, "two.csv", TWO_PLANES);
     assert!(shows(&window, "4 readings outside this plane"));
     click_role(&mut window, Role::ComboBox, "plane of view");
-    click(&mut window, "phi = 90° / 270°");
+    click(&mut window, "φ = 90° / 270°");
     let state = &window.state().state;
     assert!((state.view.azimuth.to_degrees() - 90.0).abs() < 1e-9);
     let id = state.active_sample().unwrap().scan_id();
@@ -141,7 +141,7 @@ fn the_quantity_and_the_positive_side_are_chosen() {
     let expected = plain.value * plain.theta_deg.to_radians().cos();
     assert!((with_cosine.value - expected).abs() < 1e-15);
     click_role(&mut window, Role::ComboBox, "positive side");
-    click(&mut window, "theta > 0: forward");
+    click(&mut window, "θ > 0: forward");
     assert_eq!(window.state().state.view.theta_positive, Side::Forward);
     let state = &window.state().state;
     let id = state.active_sample().unwrap().scan_id();
@@ -240,8 +240,8 @@ fn the_tooltip_shows_the_reading_at_the_pointer() {
     window.run();
     let digits = brdf_fit::format::digits;
     for text in [
-        "psi 70°".to_owned(),
-        format!("theta {:.2}°", reading.theta_deg),
+        "ψ 70°".to_owned(),
+        format!("θ {:.2}°", reading.theta_deg),
         format!("measured {}", digits(reading.value)),
         format!("theory {}", digits(reading.theory)),
         format!("difference {}", digits(reading.residual())),
@@ -278,16 +278,16 @@ fn samples_are_shown_and_hidden_each_in_its_own_colours() {
 #[test]
 fn the_tabs_plot_the_results_of_a_fit() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let scan = window.state().state.active_sample().unwrap().scan();
     let fit = scan.last_fit.as_ref().unwrap().fit.clone().unwrap();
     let first = theme::series_colour(0, Ground::Light);
-    click(&mut window, "E against iteration");
+    click(&mut window, "Iterations");
     let (line, numbers) = painted_result(&window, "plot of E against iteration", first);
     let iterations = fit.stage1.unwrap().iterations;
     assert_eq!(line.len() as u64, iterations + 1);
     assert!(numbers.len() > 2, "{numbers:?}");
-    click(&mut window, "Profile of k1");
+    click(&mut window, "Profile");
     let (line, numbers) = painted_result(&window, "plot of the profile of k1", first);
     let profile = fit.global_check.unwrap().profile;
     assert_eq!(line.len(), profile.len());
@@ -316,7 +316,7 @@ fn the_tabs_plot_the_results_of_a_fit() {
     let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(steps.len() > 5, "{values:?}");
     assert!(steps.iter().all(|step| *step == steps[0]), "{values:?}");
-    click(&mut window, "Tables");
+    click(&mut window, "Report");
     assert!(shows(&window, "verdict"));
 }
 
@@ -396,7 +396,7 @@ fn the_band_extends_one_standard_error_to_both_sides() {
     let mut window = with_z307();
     let faint = colour_of(&window, 1).gamma_multiply(0.25);
     assert!(painted_areas(&window, faint).is_empty());
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let area = painted_areas(&window, faint).concat();
     let transform = transform_of(&window, "theory");
     let state = &window.state().state;
@@ -527,8 +527,8 @@ fn the_tooltip_shows_the_theory_between_readings() {
     window.hover_at(transform.position_from_point(&at));
     window.run();
     for text in [
-        "psi 30°".to_owned(),
-        format!("theta {:.2}°", theory.theta_deg),
+        "ψ 30°".to_owned(),
+        format!("θ {:.2}°", theory.theta_deg),
         format!("theory {}", brdf_fit::format::digits(theory.value)),
     ] {
         assert!(shows(&window, &text), "{text}");
@@ -541,8 +541,8 @@ fn the_tooltip_shows_the_azimuth_outside_the_plane_of_incidence() {
     let mut window = empty();
     drop_file(&mut window, "two.csv", TWO_PLANES);
     click_role(&mut window, Role::ComboBox, "plane of view");
-    click(&mut window, "phi = 90° / 270°");
-    for (reading, phi) in [(0, ", phi 270°"), (3, ", phi 90°")] {
+    click(&mut window, "φ = 90° / 270°");
+    for (reading, phi) in [(0, ", φ 270°"), (3, ", φ 90°")] {
         let state = &window.state().state;
         let curve = &state
             .derived
@@ -591,7 +591,7 @@ fn the_polar_plot_omits_and_counts_negative_readings() {
 fn the_polar_plot_has_a_band() {
     let mut window = with_z307();
     click(&mut window, "Polar");
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let area = painted_areas(&window, colour_of(&window, 2).gamma_multiply(0.25)).concat();
     assert!(area.len() > 100);
     let transform = transform_of(&window, "polar");

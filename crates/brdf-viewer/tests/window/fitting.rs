@@ -49,8 +49,9 @@ fn check_same(window: &Window, expected: &Report) {
 #[test]
 fn a_fit_of_both_stages_equals_that_of_the_library() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     check_same(&window, &expected(|_| {}));
+    click(&mut window, "Report");
     assert!(shows(&window, "stage 1: psi <= 60 deg"));
     assert!(window.query_by_label("1 of 1 fitted").is_some());
     let steps = window
@@ -94,7 +95,7 @@ fn the_settings_are_applied_to_the_fit() {
         window.state().state.fit_settings.weights,
         ReadingWeights::SolidAngle
     );
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     check_same(
         &window,
         &expected(|options| {
@@ -107,7 +108,7 @@ fn the_settings_are_applied_to_the_fit() {
     click(&mut window, "tukey");
     click(&mut window, "Enforce rho <= 1 up to");
     click(&mut window, "Also fit GGX and Beckmann");
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let fit = report(&window).fit.unwrap();
     assert!(fit.robust.is_some() && fit.energy.is_some());
     assert!(report(&window).assessment.unwrap().models.len() > 6);
@@ -117,9 +118,10 @@ fn the_settings_are_applied_to_the_fit() {
 fn a_fit_can_start_from_the_current_values() {
     let mut window = with_z307();
     type_number(&mut window, "k1", "0.9");
+    click(&mut window, "Fit settings");
     click(&mut window, "current values");
     assert_eq!(window.state().state.fit_settings.start, Start::Current);
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let fit = report(&window).fit.unwrap();
     assert_eq!(fit.initial.parameters.k1, 0.9);
 }
@@ -129,9 +131,9 @@ fn weights_by_sigma_without_sigma_are_an_error() {
     let mut window = with_z307();
     click(&mut window, "Fit settings");
     click_role(&mut window, Role::ComboBox, "Reading weights");
-    click(&mut window, "1/sigma²");
+    click(&mut window, "1/σ²");
     assert!(shows(&window, "E is not available: "));
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let errors = window.state().state.errors();
     assert!(errors[0].contains("sigma"), "{errors:?}");
     assert!(window.query_by_label("0 of 1 fitted, 1 failed").is_some());
@@ -140,7 +142,7 @@ fn weights_by_sigma_without_sigma_are_an_error() {
 #[test]
 fn changed_parameters_are_noted_and_have_no_band() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let banded = |window: &Window| {
         let state = &window.state().state;
         let id = state.active_sample().unwrap().scan_id();
@@ -199,8 +201,8 @@ fn a_long_fit_shows_its_progress_and_is_cancelled() {
         .unwrap()
         .scan()
         .parameters;
-    click(&mut window, "E against iteration");
-    window.get_by_label("Both stages").click();
+    click(&mut window, "Iterations");
+    window.get_by_label("fit both stages").click();
     let started = Instant::now();
     let mut longest_frame = Duration::ZERO;
     // The curve of the first stage grows from frame to frame.
@@ -211,7 +213,7 @@ fn a_long_fit_shows_its_progress_and_is_cancelled() {
         let frame = Instant::now();
         window.step();
         longest_frame = longest_frame.max(frame.elapsed());
-        let below = window.get_by_label("Tables").rect().bottom();
+        let below = window.get_by_label("Summary").rect().bottom();
         let lines = painted_lines(&window, first).into_iter();
         let lines = lines.filter(|line| line.iter().all(|at| at.y > below));
         let points = lines.map(|line| line.len()).max().unwrap_or(0);
@@ -335,15 +337,16 @@ fn escape_first_closes_a_menu_and_then_cancels_the_fit() {
 #[test]
 fn convergence_is_shown_for_the_current_scan() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     open_built_in(&mut window, "titanium_anodise.csv");
-    click(&mut window, "E against iteration");
+    click(&mut window, "Iterations");
     let plot = "plot of E against iteration";
     assert!(window.query_by_label(plot).is_none());
     assert!(shows(&window, "This wavelength has not been fitted"));
     click(&mut window, "z307_on_aluminium");
     assert!(window.query_by_label(plot).is_some());
     click(&mut window, "close z307_on_aluminium");
+    click(&mut window, "Close without saving");
     assert!(window.query_by_label(plot).is_none());
 }
 
@@ -363,8 +366,8 @@ fn a_fit_with_weights_by_sigma_equals_that_of_the_library() {
     drop_file(&mut window, "sigma.csv", &text);
     click(&mut window, "Fit settings");
     click_role(&mut window, Role::ComboBox, "Reading weights");
-    click(&mut window, "1/sigma²");
-    click(&mut window, "Both stages");
+    click(&mut window, "1/σ²");
+    click(&mut window, "fit both stages");
     let scan = Measurements::from_reader(text.as_bytes()).unwrap();
     let mut options = FitOptions {
         refractive_index: Some(RefractiveIndex::Same(1.5)),
@@ -376,23 +379,23 @@ fn a_fit_with_weights_by_sigma_equals_that_of_the_library() {
     let e = report(&window).fit.unwrap().e_percent;
     assert_ne!(e, plain.e_percent);
     // E of the current parameters has the same weights.
-    let text = format!("E = {} %", brdf_fit::format::digits(e));
-    assert!(window.query_by_label(&text).is_some(), "{text}");
+    let text = format!("(E = {} %)", brdf_fit::format::two_digits(e));
+    assert!(shows(&window, &text), "{text}");
 }
 
 #[test]
 fn a_failed_fit_is_reported_above_the_tables_of_the_previous_one() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     click(&mut window, "Fit settings");
     click_role(&mut window, Role::ComboBox, "Reading weights");
-    click(&mut window, "1/sigma²");
-    click(&mut window, "Both stages");
+    click(&mut window, "1/σ²");
+    click(&mut window, "fit both stages");
     assert!(shows(&window, "The last fit failed"));
-    assert!(shows(&window, "The tables show the previous fit."));
+    assert!(shows(&window, "the text is of the previous fit"));
     click_role(&mut window, Role::ComboBox, "Reading weights");
     click(&mut window, "none");
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     assert!(!shows(&window, "The last fit failed"));
 }
 
@@ -401,7 +404,7 @@ fn a_fit_of_a_wavelength_that_is_not_shown_can_be_saved() {
     let mut window = with_z307();
     let save = Command::Export(OutputKind::Fit);
     assert!(!window.state().state.is_enabled(save));
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let id = window.state().state.active.unwrap();
     window.state_mut().state.apply(Intent::Wavelength(id, 1));
     settle(&mut window);

@@ -75,7 +75,13 @@ fn dragging_a_slider_updates_everything_in_the_same_frame() {
     assert_eq!(dragged.values.k2, before.0.values.k2);
     assert_ne!(e_percent(&window), before.1);
     check_painted_curves(&window);
-    let text = format!("E = {} %", brdf_fit::format::digits(e_percent(&window)));
+    let e = e_percent(&window);
+    let digits = brdf_fit::format::two_digits;
+    let text = format!(
+        "rms error {} % (E = {} %)",
+        digits(brdf_fit::rms_percent(e)),
+        digits(e)
+    );
     assert!(window.query_by_label(&text).is_some());
     window.drop_at(at(0.9));
     settle(&mut window);
@@ -106,7 +112,7 @@ fn a_number_box_accepts_values_beyond_the_slider() {
 #[test]
 fn a_number_box_that_is_left_unchanged_does_not_round_its_value() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let before = parameters(&window);
     window.get_by_role_and_label(Role::SpinButton, "k1").click();
     settle(&mut window);
@@ -118,7 +124,7 @@ fn a_number_box_that_is_left_unchanged_does_not_round_its_value() {
 #[test]
 fn a_double_click_and_the_button_reset_to_the_fit() {
     let mut window = with_z307();
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     let fitted = parameters(&window);
     type_number(&mut window, "k1", "0.9");
     type_number(&mut window, "k2", "0.9");
@@ -199,11 +205,11 @@ fn a_fit_does_not_change_a_fixed_parameter() {
         Some(egui::accesskit::Toggled::True)
     );
     let free = parameters(&window).values.k2;
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     assert_eq!(parameters(&window).values.k1, 0.3);
     assert_ne!(parameters(&window).values.k2, free);
     click(&mut window, "fix k1");
-    click(&mut window, "Both stages");
+    click(&mut window, "fit both stages");
     assert_ne!(parameters(&window).values.k1, 0.3);
 }
 
@@ -211,11 +217,7 @@ fn a_fit_does_not_change_a_fixed_parameter() {
 fn each_wavelength_has_its_own_parameters() {
     let mut window = with_z307();
     type_number(&mut window, "k1", "0.7");
-    window
-        .get_by_role_and_label(Role::ComboBox, "Wavelength")
-        .click();
-    window.run();
-    window.get_by_label("0.85223 um").click();
+    window.get_by_label("wavelength 0.85223 µm").click();
     settle(&mut window);
     assert_ne!(parameters(&window).values.k1, 0.7);
     assert_eq!(window.state().state.active_sample().unwrap().current, 1);
@@ -255,7 +257,7 @@ fn reset_keeps_parameters_fixed() {
         assert!(parameters(&window).is_fixed(Parameter::K1));
         assert_ne!(parameters(&window).values.k1, 0.9);
         click(&mut window, "fix k1");
-        click(&mut window, "Both stages");
+        click(&mut window, "fit both stages");
     }
 }
 

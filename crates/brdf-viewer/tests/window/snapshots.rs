@@ -4,18 +4,24 @@
 //! changed one.
 
 use crate::common::{NoDialogs, Window, drop_file, settle, window_with};
+use brdf_fit::Model;
 use brdf_viewer::intent::{Command, Intent};
+use brdf_viewer::state::id::SampleId;
+use brdf_viewer::state::interface::ResultTab;
 use brdf_viewer::state::saved::Settings;
 
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 
 /// The states of the window of which there are snapshots.
-const STATES: [&str; 6] = [
+const STATES: [&str; 9] = [
     "empty",
     "loaded",
     "fitted",
     "logarithmic",
     "panels",
+    "polar",
+    "compared",
+    "wavelengths",
     "error",
 ];
 
@@ -37,6 +43,19 @@ fn bring_to(window: &mut Window, state: &str) {
             apply(Intent::Command(Command::Residuals));
         }
         "panels" => apply(Intent::Command(Command::Panels)),
+        "polar" => {
+            apply(Intent::Command(Command::Polar));
+            apply(Intent::Command(Command::Logarithmic));
+        }
+        "compared" => {
+            apply(Intent::Tab(ResultTab::Models));
+            apply(Intent::ToggleModel(Model::SmithN));
+            apply(Intent::UseIncidence(SampleId(0), 1, false));
+        }
+        "wavelengths" => {
+            apply(Intent::Command(Command::FitAll));
+            apply(Intent::Tab(ResultTab::Wavelengths));
+        }
         "error" => {
             let text = "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n10,9x,0.2\n";
             drop_file(window, "lacquer.csv", text);
@@ -83,6 +102,19 @@ fn mask_times(window: &mut Window) {
             stage.seconds = 0.0;
         }
     }
+}
+
+/// The window of a screen with two pixels per point.
+#[test]
+fn fine_screen() {
+    let mut window = window_with([1280.0, 720.0], NoDialogs, Settings::in_memory());
+    window.ctx.set_pixels_per_point(2.0);
+    window.set_size(egui::vec2(1280.0, 720.0));
+    bring_to(&mut window, "compared");
+    mask_times(&mut window);
+    window.remove_cursor();
+    settle(&mut window);
+    window.try_snapshot("compared_light_2x").unwrap();
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::intent::Intent;
 use crate::state::State;
 use crate::state::sample::Scan;
 use crate::theme;
-use crate::widgets::{named, quality_mark};
+use crate::widgets::named;
 
 /// Draws the table.
 pub(super) fn show(ui: &mut Ui, state: &State, scan: &Scan, intents: &mut Vec<Intent>) {
@@ -74,7 +74,7 @@ fn show_candidate(
         .verdict
         .as_ref()
         .and_then(|verdict| verdict.model);
-    let mut name = RichText::new(format!("{} {model}", quality_mark(quality)))
+    let mut name = RichText::new(format!("{model} ({})", quality.word()))
         .color(theme::quality_colour(quality, theme::ground(ui.ctx())));
     if verdict == Some(model) {
         name = name.strong().underline();

@@ -29,18 +29,23 @@ pub(super) fn show_report(ui: &mut Ui, scan: &Scan) {
 
 fn show(ui: &mut Ui, scan: &Scan, is_shown: impl Fn(&Section) -> bool) {
     let warning = ui.visuals().warn_fg_color;
-    if let Some(error) = &scan.fit_error {
-        ui.colored_label(warning, format!("The last fit failed: {error}"));
-    }
     let Some(report) = &scan.last_fit else {
         ui.label("Not fitted yet.");
         return;
     };
     if scan.fit_error.is_some() {
-        ui.colored_label(warning, "The tables show the previous fit.");
+        ui.colored_label(
+            warning,
+            "The last fit failed: the text is of the previous fit.",
+        );
     }
     if scan.current_fit().is_none() {
-        ui.colored_label(warning, "The parameters have changed since this fit.");
+        let text = if scan.uses_readings_of(report) {
+            "The parameters have changed since this fit."
+        } else {
+            "The choice of readings has changed since this fit."
+        };
+        ui.colored_label(warning, text);
     }
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         for section in report.sections().iter().filter(|section| is_shown(section)) {

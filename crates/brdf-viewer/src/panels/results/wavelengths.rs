@@ -11,7 +11,7 @@ use crate::plot::axis::Axis;
 use crate::state::State;
 use crate::state::sample::{Sample, Scan};
 use crate::theme;
-use crate::widgets::{named, quality_mark};
+use crate::widgets::named;
 
 /// The most rows of the table; a plot shows the others.
 const MOST_ROWS: usize = 400;
@@ -87,11 +87,7 @@ fn show_row(
     };
     let quality = Quality::of(fit);
     let colour = theme::quality_colour(quality, theme::ground(ui.ctx()));
-    let rms = format!(
-        "{} {}",
-        two_digits(fit.rms_percent()),
-        quality_mark(quality)
-    );
+    let rms = format!("{} {}", two_digits(fit.rms_percent()), quality.word());
     ui.label(RichText::new(rms).color(colour));
     for parameter in parameters {
         let text = estimate(scan, *parameter).map(ToString::to_string);

@@ -199,6 +199,34 @@ fn a_fit_again_gives_the_same_numbers_to_the_last_digit() {
 }
 
 #[test]
+fn readings_that_a_fit_left_out_are_left_out_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let [first, second] = ["first.json", "second.json"].map(|name| folder.path().join(name));
+    let scan = measured("z307_on_aluminium.csv");
+    let run = |options: &[&str], json: &Path| {
+        let mut command = fit_command();
+        let command = command.arg(&scan).args(options).arg("--json").arg(json);
+        let output = command.output().unwrap();
+        succeeded(&output);
+        String::from_utf8(output.stdout).unwrap()
+    };
+    run(&["--n", "1.5"], &first);
+    // As the viewer writes it.
+    let mut document: Value = serde_json::from_str(&fs::read_to_string(&first).unwrap()).unwrap();
+    document["reports"][0]["left_out"] = serde_json::json!([0, 5, 111]);
+    fs::write(&first, document.to_string()).unwrap();
+    let text = run(&["--again", first.to_str().unwrap()], &second);
+    assert!(text.contains("3 readings are left out by choice"), "{text}");
+    let again = Document::read(&second).unwrap().reports.remove(0);
+    let all = Measurements::read(&scan, &brdf_fit::ReadOptions::default()).unwrap();
+    let used = all.by_wavelength()[0].without(&[0, 5, 111]);
+    let options = &again.fit.as_ref().unwrap().options;
+    let (expected, _) = brdf_fit::Report::new(&used, options, brdf_fit::Depth::Fit);
+    assert_eq!((again.readings, again.left_out), (109, vec![0, 5, 111]));
+    assert_eq!(again.fit.unwrap().at(), expected.fit.unwrap().at());
+}
+
+#[test]
 fn the_curves_of_every_model_are_of_their_own_scan() {
     let folder = tempfile::tempdir().unwrap();
     let curves = folder.path().join("curves.csv");

@@ -101,7 +101,7 @@ impl Viewer {
     /// In a narrow window, of which the user has not chosen the panels, the plot has more than half of
     /// the window: samples and results are folded to their buttons in the status line.
     fn fold_panels(&mut self, width: f32) {
-        if width < NARROW_WINDOW && self.state.interface == Interface::default() {
+        if width < NARROW_WINDOW && self.settings.saved.interface == Interface::default() {
             self.state.interface.samples = false;
             self.state.interface.results = false;
         }
@@ -194,6 +194,7 @@ impl Viewer {
             match effect {
                 Effect::Job(job) => self.worker.start(job),
                 Effect::Copy(text) => ctx.copy_text(text),
+                Effect::CopyImage(image) => ctx.copy_image(image),
                 Effect::AskOpen if self.dialogs.available() => {
                     self.dialogs.open(self.worker.events());
                 }

@@ -102,6 +102,8 @@ pub enum Command {
     CloseAll,
     /// Ask for the path of a file to write.
     Export(OutputKind),
+    /// Copy the figure to the clipboard.
+    CopyFigure,
     /// Copy the parameters to the clipboard.
     CopyParameters,
     /// Quit the program.

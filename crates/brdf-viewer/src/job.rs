@@ -11,6 +11,8 @@ use brdf_fit::read::LazyScan;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements};
 
+use egui::ColorImage;
+
 use crate::cancel::CancelFlag;
 use crate::output_kind::{FigureFormat, OutputKind};
 use crate::state::id::{SampleId, ScanId};
@@ -34,6 +36,8 @@ pub enum FileJob {
     Open(PathBuf, Convention),
     /// Read a scan from the content of a file: its name, its bytes and its angular convention.
     OpenBytes(String, Vec<u8>, Convention),
+    /// Draw a figure for the clipboard.
+    Draw(Vec<FigureLayer>, View),
     /// Write a file.
     Write(PathBuf, Output),
 }
@@ -132,6 +136,8 @@ pub enum Event {
     FitsEnded(u64),
     /// A file was written, and the samples whose fits it contains.
     Written(PathBuf, Vec<SampleId>),
+    /// A figure was drawn for the clipboard.
+    Drawn(ColorImage),
     /// A file could not be written, and the error message.
     WriteFailed(String),
 }

@@ -174,6 +174,17 @@ impl Document {
         });
         nearest.map(|(_, options)| options)
     }
+
+    /// The indices of the readings that the fit of this file at this wavelength leaves out: see
+    /// [`Report::left_out`]. They mean nothing for another file.
+    pub fn left_out_of(&self, source: &str, wavelength_um: Option<f64>) -> &[usize] {
+        let name = Path::new(source).file_name();
+        let is_same = |report: &&Report| {
+            Path::new(&report.file).file_name() == name && report.wavelength_um == wavelength_um
+        };
+        let mut same = self.reports.iter().filter(is_same);
+        same.next().map_or(&[], |report| &report.left_out)
+    }
 }
 
 /// The relative difference of a wavelength from a wanted one; `None` if they do not match.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::State;
+use super::{Effect, State};
 use crate::intent::Intent;
 use crate::job::Event;
 
@@ -108,6 +108,10 @@ impl State {
                     });
                 }
                 self.status = format!("{} written", path.display());
+            }
+            Event::Drawn(image) => {
+                "figure copied".clone_into(&mut self.status);
+                self.effects.push(Effect::CopyImage(image));
             }
             Event::WriteFailed(error) => self.report_error(error),
         }

@@ -31,6 +31,7 @@ impl State {
                 let path = self.suggested_path(kind);
                 self.effects.push(Effect::AskExport(kind, path));
             }
+            Command::CopyFigure => self.copy_figure(),
             Command::CopyParameters => self.copy_parameters(),
             Command::Quit => self.effects.push(Effect::Quit),
             Command::Pin => self.pin(),
@@ -87,7 +88,9 @@ impl State {
             | Command::Export(OutputKind::Curves) => active.is_some(),
             Command::UnpinAll => !self.ghosts.is_empty(),
             Command::CloseAll => !self.samples.is_empty(),
-            Command::Export(OutputKind::Figure(_)) => self.visible().next().is_some(),
+            Command::CopyFigure | Command::Export(OutputKind::Figure(_)) => {
+                self.visible().next().is_some()
+            }
             Command::Export(OutputKind::Fit) => active.is_some_and(Sample::is_fitted),
             Command::Undo => self.history.can_undo(),
             Command::Redo => self.history.can_redo(),

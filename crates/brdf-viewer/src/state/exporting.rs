@@ -152,19 +152,30 @@ impl State {
         }
     }
 
+    /// The samples that a figure shows.
+    fn layers(&self) -> Result<Vec<FigureLayer>, ExportError> {
+        let layers: Vec<FigureLayer> = self
+            .visible()
+            .map(|sample| FigureLayer::new(sample, self.family_of(sample)))
+            .collect();
+        if layers.iter().all(|layer| layer.incidences.is_empty()) {
+            return Err(ExportError::EmptyFigure);
+        }
+        Ok(layers)
+    }
+
+    /// Copies the figure to the clipboard.
+    pub(super) fn copy_figure(&mut self) {
+        match self.layers() {
+            Ok(layers) => self.start(Job::File(FileJob::Draw(layers, self.view))),
+            Err(error) => self.report_error(error.to_string()),
+        }
+    }
+
     fn output(&self, kind: OutputKind, path: &Path) -> Result<Output, ExportError> {
         let sample = self.active_sample().ok_or(ExportError::NoSample)?;
         Ok(match kind {
-            OutputKind::Figure(format) => {
-                let layers: Vec<FigureLayer> = self
-                    .visible()
-                    .map(|sample| FigureLayer::new(sample, self.family_of(sample)))
-                    .collect();
-                if layers.iter().all(|layer| layer.incidences.is_empty()) {
-                    return Err(ExportError::EmptyFigure);
-                }
-                Output::Figure(format, layers, self.view)
-            }
+            OutputKind::Figure(format) => Output::Figure(format, self.layers()?, self.view),
             OutputKind::Curves => {
                 let scan = sample.scan();
                 let psi = scan.incidences.iter().map(|incidence| incidence.psi);

@@ -30,6 +30,8 @@ use std::path::PathBuf;
 use brdf_fit::Convention;
 use brdf_fit::plot::View;
 
+use egui::ColorImage;
+
 use crate::job::{FileJob, Job};
 use crate::output_kind::OutputKind;
 use derived::Derived;
@@ -52,6 +54,8 @@ pub enum Effect {
     Job(Job),
     /// Copy a text to the clipboard.
     Copy(String),
+    /// Copy a picture to the clipboard.
+    CopyImage(ColorImage),
     /// Ask for files to open.
     AskOpen,
     /// Ask for the path of a file to write, and suggest one.

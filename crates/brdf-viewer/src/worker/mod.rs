@@ -99,6 +99,10 @@ fn work_on_file(job: FileJob) -> Event {
                 Err(error) => Event::OpenFailed(error.to_string()),
             }
         }
+        FileJob::Draw(layers, view) => match run(|| write::pixels(&layers, &view)) {
+            Ok(image) => Event::Drawn(image),
+            Err(error) => Event::WriteFailed(error.to_string()),
+        },
         FileJob::Write(path, output) => match run(|| write::write(&path, &output)) {
             Ok(()) => {
                 let saved = match output {

@@ -6,9 +6,12 @@ use std::sync::Arc;
 
 use brdf_core::{AnyBrdf, Geometry, ParameterError};
 use brdf_fit::Measurements;
+use brdf_fit::format::two_digits;
 use brdf_fit::output::{self, write_file};
 use brdf_fit::plot::{self, PlotError, View, figure_of, write_theory_alone};
 use brdf_fit::report::{Document, Report, write_theory};
+
+use egui::ColorImage;
 
 use crate::job::{FigureLayer, Output};
 use crate::output_kind::FigureFormat;
@@ -38,6 +41,9 @@ pub(super) enum WriteError {
     /// The figure cannot be drawn.
     #[error(transparent)]
     Figure(#[from] PlotError),
+    /// The pixels of the figure cannot be read.
+    #[error(transparent)]
+    Pixels(#[from] image::ImageError),
     /// The curves cannot be formatted.
     #[error(transparent)]
     Curves(#[from] io::Error),
@@ -71,6 +77,18 @@ pub(super) fn write(path: &Path, output: &Output) -> Result<(), WriteError> {
 /// The standard error of the theory at a geometry, in 1/sr.
 type Band<'a> = Box<dyn Fn(&Geometry) -> f64 + 'a>;
 
+/// The pixels of a figure for the clipboard.
+///
+/// # Errors
+///
+/// The figure cannot be drawn.
+pub(super) fn pixels(layers: &[FigureLayer], view: &View) -> Result<ColorImage, WriteError> {
+    let png = figure(FigureFormat::Png, layers, view)?;
+    let image = image::load_from_memory_with_format(&png, image::ImageFormat::Png)?.to_rgba8();
+    let size = [image.width() as usize, image.height() as usize];
+    Ok(ColorImage::from_rgba_unmultiplied(size, &image))
+}
+
 fn figure(
     format: FigureFormat,
     layers: &[FigureLayer],
@@ -94,7 +112,7 @@ fn figure(
             name: layer.name.clone(),
             measurements: &layer.measurements,
             brdf: *brdf,
-            theory: parameters_as_text(&layer.parameters),
+            theory: theory_as_text(layer),
             sigma: band.as_deref(),
             incidences: Some(&layer.incidences),
             family: layer.family,
@@ -121,13 +139,19 @@ fn brdf(parameters: &EditedParameters) -> Result<AnyBrdf, ParameterError> {
     AnyBrdf::new(parameters.model.family(), &parameters.values)
 }
 
-/// The name of the model and its parameters.
-fn parameters_as_text(parameters: &EditedParameters) -> String {
+/// The name of the model, its parameters, and the error of the fit if they are those of the fit.
+fn theory_as_text(layer: &FigureLayer) -> String {
+    let parameters = &layer.parameters;
     let all = parameters.model_parameters().into_iter();
     let values: Vec<String> = all
         .map(|p| format!("{p} = {:.4}", p.of(&parameters.values)))
         .collect();
-    format!("{}: {}", parameters.model, values.join(", "))
+    let fit = layer.fit.as_ref().and_then(|report| report.fit.as_ref());
+    let error = fit.map_or_else(String::new, |fit| {
+        let (rms, e) = (two_digits(fit.rms_percent()), two_digits(fit.e_percent));
+        format!("; rms {rms} % (E = {e} %)")
+    });
+    format!("{}: {}{error}", parameters.model, values.join(", "))
 }
 
 fn curves(

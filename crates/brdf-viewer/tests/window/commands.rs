@@ -43,6 +43,7 @@ fn effect(command: Command, window: &Window) -> bool {
         Command::Export(kind) => {
             matches!(&state.dialog, Some(Dialog::Export { kind: asked, .. }) if *asked == kind)
         }
+        Command::CopyFigure => state.status == "figure copied",
         Command::CopyParameters => state.status == "parameters copied",
         Command::Undo => state.history.can_redo(),
         Command::Redo => !state.history.can_redo() && k1(state) == 0.4,

@@ -390,6 +390,18 @@ fn a_table_is_opened_as_a_goniometer_scan() {
         .collect();
     assert_eq!(incidences.len(), 9);
     assert!((incidences[8] - 80.0).abs() < 1e-9);
+    // The fit is of all bins, as that of the command line.
+    assert!(shows(&window, "The fit is of all bins of the table"));
+    click(&mut window, "fit both stages");
+    let lazy = brdf_fit::LazyScan::open(&table, &brdf_fit::ReadOptions::default()).unwrap();
+    let all = lazy[0].measurements().unwrap();
+    let scan = window.state().state.active_sample().unwrap().scan();
+    let found = scan.current_fit().unwrap().fit.clone().unwrap();
+    let options = &found.options;
+    let expected = brdf_fit::fit(&all, options).unwrap();
+    assert_eq!(found.readings, all.readings().len());
+    assert_eq!(found.at(), expected.at());
+    assert_eq!(found.e_percent, expected.e_percent);
 }
 
 #[test]

@@ -109,7 +109,7 @@ fn mask_times(window: &mut Window) {
 fn fine_screen() {
     let mut window = window_with([1280.0, 720.0], NoDialogs, Settings::in_memory());
     window.ctx.set_pixels_per_point(2.0);
-    window.set_size(egui::vec2(1280.0, 720.0));
+    window.set_size(egui::vec2(2560.0, 1440.0));
     bring_to(&mut window, "compared");
     mask_times(&mut window);
     window.remove_cursor();

@@ -33,13 +33,13 @@ pub(in crate::cli) fn run(arguments: &Arguments) -> Outcome {
     let jobs = plan(&scans, arguments, document.as_ref(), &mut problems);
     let fits = fit_all(&jobs, arguments);
     let (mut scans, mut reports) = (Vec::new(), Vec::new());
-    for ((scan, _), fit) in jobs.iter().zip(fits) {
+    for (job, fit) in jobs.iter().zip(fits) {
         match fit {
             Ok((report, error)) => {
                 if let Some(error) = error {
                     add_error(&mut problems, &report, &error, arguments);
                 }
-                scans.push(*scan);
+                scans.push(job.scan);
                 reports.push(report);
             }
             Err(error) => problems.add(&Failure::from(error), Outcome::Failed),
@@ -128,13 +128,18 @@ fn joined(scans: &[LazyScan], problems: &mut Problems) -> Vec<LazyScan> {
 }
 
 /// A scan of one wavelength, and how it is fitted.
-type Job<'a> = (&'a LazyScan, FitOptions);
+struct Job<'a> {
+    scan: &'a LazyScan,
+    /// The indices of the readings that the earlier fit left out.
+    left_out: &'a [usize],
+    options: FitOptions,
+}
 
 /// The fits of all scans, in the order of the files, wavelengths and models.
 fn plan<'a>(
     scans: &'a [LazyScan],
     arguments: &Arguments,
-    document: Option<&Document>,
+    document: Option<&'a Document>,
     problems: &mut Problems,
 ) -> Vec<Job<'a>> {
     let mut jobs = Vec::new();
@@ -146,7 +151,14 @@ fn plan<'a>(
         };
         if let Some(options) = options {
             let each = arguments.for_each_model(options);
-            jobs.extend(each.into_iter().map(|options| (scan, options)));
+            let left_out = document.map_or(&[][..], |document| {
+                document.left_out_of(&source, wavelength_um)
+            });
+            jobs.extend(each.into_iter().map(|options| Job {
+                scan,
+                left_out,
+                options,
+            }));
         } else {
             let place = Place {
                 file: source.into_owned(),
@@ -168,17 +180,20 @@ type Fitted = Result<(Report, Option<FitError>), ReadError>;
 fn fit_all(jobs: &[Job<'_>], arguments: &Arguments) -> Vec<Fitted> {
     let (choice, depth) = (arguments.choice(), arguments.depth());
     let bar = bar(jobs.len());
-    let fit = |(scan, options): &Job<'_>, observer: &dyn Observer| {
-        let measurements = scan.measurements()?;
-        let fitted = Report::observed(&measurements, options, choice, depth, observer);
+    let fit = |job: &Job<'_>, observer: &dyn Observer| {
+        let all = job.scan.measurements()?;
+        let used = (!job.left_out.is_empty()).then(|| all.without(job.left_out));
+        let used = used.as_ref().unwrap_or(&all);
+        let (mut report, error) = Report::observed(used, &job.options, choice, depth, observer);
+        report.left_out = job.left_out.to_vec();
         bar.inc(1);
-        Ok(fitted)
+        Ok((report, error))
     };
     let fit_channel = |job: &Job<'_>| {
-        let scan = place(&job.0.source(), job.0.wavelength_um());
+        let scan = place(&job.scan.source(), job.scan.wavelength_um());
         fit(job, &PhaseMessage { bar: &bar, scan })
     };
-    let in_file = |(scan, _): &Job<'_>| scan.is_in_file();
+    let in_file = |job: &Job<'_>| job.scan.is_in_file();
     let mut of_tables = jobs
         .iter()
         .filter(|job| in_file(job))

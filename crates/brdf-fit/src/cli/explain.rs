@@ -125,6 +125,9 @@ pub(super) fn warning(warning: &Warning) -> String {
                 warning,
                 "for example --declare quantity=reflectance_factor_percent",
             ),
+            Hint::PeaksTowardsSource { .. } => {
+                with_hint(warning, "--theta-positive forward reads it so")
+            }
             Hint::AllNegative => with_hint(warning, "--declare quantity=log10_brdf"),
             Hint::DetectorShadow { within_deg, .. } => {
                 let degrees = within_deg.ceil() + 1.0;

@@ -29,6 +29,13 @@ const MOST_OFFSET_DEG: f64 = 8.0;
 /// A specular peak is at least this many times the median reading of its incidence.
 const LEAST_PEAK: f64 = 2.0;
 
+/// Incidence angles in degrees at which the directions of source and mirror are told apart, and the
+/// peaks of rough surfaces are hardly displaced towards the horizon.
+const INCLINED_DEG: std::ops::RangeInclusive<f64> = 8.0..=50.0;
+
+/// A peak within this angle of the source stands at the source, in degrees.
+const AT_SOURCE_DEG: f64 = 5.0;
+
 /// What the numbers of a scan suggest about its file. A hint is no proof: the readings are used as they
 /// are.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -59,6 +66,11 @@ pub enum Hint {
         /// The mean of theta + psi at the peaks, in degrees.
         offset_deg: f64,
     },
+    /// The specular peaks stand at theta = +psi: the forward side seems to be positive.
+    PeaksTowardsSource {
+        /// The number of incidences with such a peak.
+        incidences: usize,
+    },
     /// The specular peaks stand at theta = 0: view angles are counted from the mirror direction.
     FromMirrorDirection,
     /// The specular peaks stand at twice the incidence angle: view angles are counted from the source.
@@ -74,6 +86,7 @@ impl Hint {
             Self::AllNegative => "all-negative?",
             Self::DetectorShadow { .. } => "detector-shadow?",
             Self::PeakOffset { .. } => "peak-offset?",
+            Self::PeaksTowardsSource { .. } => "theta-reversed?",
             Self::FromMirrorDirection => "angles-from-mirror-direction?",
             Self::FromSource => "angles-from-source?",
         }
@@ -109,6 +122,11 @@ impl fmt::Display for Hint {
                  may be off",
                 offset_deg.abs(),
                 if *offset_deg > 0.0 { "the source" } else { "the horizon" }
+            ),
+            Self::PeaksTowardsSource { incidences } => write!(
+                f,
+                "at all {incidences} inclined incidences the peak stands at theta = +psi, towards the \
+                 source: unless the sample is retroreflective, the file counts the forward side positive"
             ),
             Self::FromMirrorDirection => f.write_str(
                 "the specular peaks stand at theta = 0 for all incidences: the view angles seem to be \
@@ -285,6 +303,20 @@ fn peaks_in_zero(scan: &Measurements) -> bool {
     inclined.clone().count() >= 2 && inclined.into_iter().all(|(_, theta)| theta.abs() <= 3.0)
 }
 
+/// That the peaks of all inclined incidences, at least two, stand towards the source.
+pub(super) fn peaks_towards_source(scan: &Measurements) -> Option<Hint> {
+    if scan.is_table() {
+        return None;
+    }
+    let peaks = peaks(scan);
+    let inclined = peaks.iter().filter(|(psi, _)| INCLINED_DEG.contains(psi));
+    let incidences = inclined.clone().count();
+    let are_all = inclined
+        .into_iter()
+        .all(|(psi, theta)| (theta - psi).abs() <= AT_SOURCE_DEG);
+    (incidences >= 2 && are_all).then_some(Hint::PeaksTowardsSource { incidences })
+}
+
 /// The view angle of the specular peak in the plane of incidence, in degrees, from a parabola through the
 /// logarithms of the three highest readings; `None` where there is no peak.
 fn peak_deg<'a>(readings: impl Iterator<Item = &'a Measurement>) -> Option<f64> {
@@ -351,6 +383,22 @@ mod tests {
         assert!(
             matches!(shaded[..], [Hint::DetectorShadow { .. }]),
             "{shaded:?}"
+        );
+    }
+
+    #[test]
+    fn peaks_towards_the_source_suggest_the_other_side() {
+        let glossy = scan(Parameters::new(0.3, 0.05, 0.1).unwrap(), 1.5);
+        assert_eq!(peaks_towards_source(&glossy), None);
+        let mut readings = glossy.readings().to_vec();
+        for reading in &mut readings {
+            reading.theta = -reading.theta;
+        }
+        let reversed = Measurements::new("test", readings).unwrap();
+        let hint = peaks_towards_source(&reversed);
+        assert!(
+            matches!(hint, Some(Hint::PeaksTowardsSource { incidences: 2.. })),
+            "{hint:?}"
         );
     }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::deviations::Quality;
 use super::estimate::{Estimate, Knowledge};
-use super::hint::{Hint, hints, reinterpretations};
+use super::hint::{Hint, hints, peaks_towards_source, reinterpretations};
 use super::noise::Noise;
 use super::physics::violation_deg;
 use super::uncertainty::Uncertainty;
@@ -228,7 +228,9 @@ pub(crate) fn warnings(
             e_percent: fit.e_percent,
         });
     }
-    warnings.extend(theta_reversed(measurements, fitted, progress)?);
+    let reversed = theta_reversed(measurements, fitted, progress)?;
+    // Where the model describes the readings on neither side, the places of the peaks still tell it.
+    warnings.extend(reversed.or_else(|| peaks_towards_source(measurements).map(Warning::Reading)));
     warnings.extend(uncertainty.estimates.iter().filter_map(not_determined));
     warnings.extend(larger_than_stated_errors(uncertainty));
     warnings.extend(reflectance_above_one(fit, uncertainty));

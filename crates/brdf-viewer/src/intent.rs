@@ -31,6 +31,8 @@ pub enum Intent {
     Activate(SampleId),
     /// Show another wavelength of a sample, by its index.
     Wavelength(SampleId, usize),
+    /// Plot a wavelength of a sample beside the current one, or no longer.
+    PlotBeside(SampleId, usize, bool),
     /// Show or hide one incidence of a sample, by its index.
     ShowIncidence(SampleId, usize, bool),
     /// Use the readings of one incidence of a sample in the fit, or leave them out.

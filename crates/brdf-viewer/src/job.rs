@@ -17,7 +17,7 @@ use crate::cancel::CancelFlag;
 use crate::output_kind::{FigureFormat, OutputKind};
 use crate::state::id::{SampleId, ScanId};
 use crate::state::parameters::EditedParameters;
-use crate::state::sample::{Opened, Sample};
+use crate::state::sample::{Opened, Sample, Scan};
 
 /// A job of the worker.
 #[derive(Debug)]
@@ -99,11 +99,10 @@ pub struct FigureLayer {
 }
 
 impl FigureLayer {
-    /// The visible incidences of a sample, in the colours of a family.
-    pub fn new(sample: &Sample, family: Option<usize>) -> Self {
-        let scan = sample.scan();
+    /// The visible incidences of a scan of a sample, in the colours of a family.
+    pub fn new(sample: &Sample, scan: &Scan, family: Option<usize>) -> Self {
         Self {
-            name: sample.name.clone(),
+            name: sample.name_of(scan),
             measurements: Arc::clone(&scan.measurements),
             parameters: scan.parameters,
             fit: scan.current_fit().cloned(),

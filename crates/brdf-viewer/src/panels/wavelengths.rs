@@ -2,7 +2,7 @@
 
 use brdf_fit::Quality;
 use brdf_fit::format::two_digits;
-use egui::{Button, Grid, RichText, Role, ScrollArea, Ui};
+use egui::{Button, Checkbox, Grid, RichText, Role, ScrollArea, Ui, WidgetInfo};
 
 use crate::intent::Intent;
 use crate::state::sample::{Sample, Scan};
@@ -27,7 +27,7 @@ pub(super) fn show(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
         .max_height(MOST_HEIGHT)
         .show_rows(ui, height, sample.scans.len() + 1, |ui, rows| {
             Grid::new("wavelengths")
-                .num_columns(4)
+                .num_columns(5)
                 .spacing([8.0, 2.0])
                 .show(ui, |ui| {
                     for row in rows {
@@ -42,7 +42,7 @@ pub(super) fn show(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
 }
 
 fn show_header(ui: &mut Ui) {
-    for name in ["wavelength", "n", "rms %"] {
+    for name in ["", "wavelength", "n", "rms %"] {
         ui.weak(name);
     }
 }
@@ -50,6 +50,7 @@ fn show_header(ui: &mut Ui) {
 fn show_row(ui: &mut Ui, sample: &Sample, i: usize, intents: &mut Vec<Intent>) {
     let scan = &sample.scans[i];
     let wavelength = name(scan);
+    show_beside(ui, sample, i, scan, intents);
     let button = ui.add(Button::selectable(sample.current == i, &wavelength));
     let response = named(button, Role::Button, &format!("wavelength {wavelength}"));
     if response.clicked() {
@@ -66,6 +67,19 @@ fn show_row(ui: &mut Ui, sample: &Sample, i: usize, intents: &mut Vec<Intent>) {
     let colour = theme::quality_colour(quality, theme::ground(ui.ctx()));
     let word = RichText::new(quality.word()).color(colour);
     ui.label(word).on_hover_text(quality.to_string());
+}
+
+/// The check box that plots a wavelength beside the current one.
+fn show_beside(ui: &mut Ui, sample: &Sample, i: usize, scan: &Scan, intents: &mut Vec<Intent>) {
+    let is_current = sample.current == i;
+    let mut beside = is_current || scan.is_beside;
+    let check_box = ui.add_enabled(!is_current, Checkbox::without_text(&mut beside));
+    let name = format!("plot {} as well", name(scan));
+    let (enabled, selected) = (!is_current, beside);
+    check_box.widget_info(|| WidgetInfo::selected(Role::CheckBox, enabled, selected, &name));
+    if check_box.on_hover_text(name).changed() {
+        intents.push(Intent::PlotBeside(sample.id, i, beside));
+    }
 }
 
 /// A refractive index with three decimals at most.

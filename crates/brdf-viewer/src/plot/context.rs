@@ -21,7 +21,7 @@ pub struct DrawnCurve<'a> {
     /// Its scan.
     pub scan: ScanId,
     /// The name of its sample.
-    pub sample: &'a str,
+    pub sample: String,
     /// The colour.
     pub colour: Color32,
     /// The mark of its readings.

@@ -85,22 +85,27 @@ fn panel_count(state: &State) -> usize {
     psi.len()
 }
 
-/// The curves of all visible samples.
+/// The curves of all plotted scans.
 fn drawn_curves<'a>(ui: &Ui, state: &'a State) -> Vec<DrawnCurve<'a>> {
     let ground = theme::ground(ui.ctx());
     let mut all = Vec::new();
-    for sample in state.visible() {
-        let curves = state.derived.curves(sample.scan_id());
-        let family = state.family_of(sample);
+    for plotted in state.plotted() {
+        let curves = state.derived.curves(plotted.id);
+        let (sample, family) = (plotted.sample, plotted.family);
+        let is_current = plotted.id == sample.scan_id();
         for (i, curve) in curves.iter().enumerate() {
             all.push(DrawnCurve {
                 curve,
-                scan: sample.scan_id(),
-                sample: &sample.name,
+                scan: plotted.id,
+                sample: sample.name_of(plotted.scan),
                 colour: theme::colour(family, i, curves.len(), ground),
                 mark: mark(family, i),
-                left_out: sample.scan().left_out(),
-                ghosts: ghosts(state, sample.id, i),
+                left_out: plotted.scan.left_out(),
+                ghosts: if is_current {
+                    ghosts(state, sample.id, i)
+                } else {
+                    Vec::new()
+                },
             });
         }
     }

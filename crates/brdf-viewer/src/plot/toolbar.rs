@@ -165,14 +165,14 @@ struct Counts {
 impl Counts {
     fn new(state: &State) -> Self {
         let mut counts = Self::default();
-        for sample in state.visible() {
-            if let Some(selection) = state.derived.selection(sample.scan_id()) {
+        for plotted in state.plotted() {
+            if let Some(selection) = state.derived.selection(plotted.id) {
                 counts.drawn += selection.shown();
                 counts.in_plane += selection.all();
                 counts.not_positive += selection.not_positive();
                 counts.negative += selection.negative();
             }
-            let visible = sample.scan().incidences.iter().filter(|i| i.visible);
+            let visible = plotted.scan.incidences.iter().filter(|i| i.visible);
             counts.all += visible.map(|i| i.readings).sum::<usize>();
         }
         counts

@@ -25,6 +25,11 @@ impl State {
             Intent::ShowSample(id, visible) => self.change(id, |s| s.visible = visible),
             Intent::Activate(id) => self.activate(id),
             Intent::Wavelength(id, wavelength) => self.select_wavelength(id, wavelength),
+            Intent::PlotBeside(id, wavelength, beside) => self.change(id, |sample| {
+                if let Some(scan) = sample.scans.get_mut(wavelength) {
+                    scan.is_beside = beside;
+                }
+            }),
             Intent::ShowIncidence(id, i, visible) => self.change(id, |sample| {
                 if let Some(incidence) = sample.scan_mut().incidences.get_mut(i) {
                     incidence.visible = visible;

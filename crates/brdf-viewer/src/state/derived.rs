@@ -183,8 +183,10 @@ impl Derived {
         let is_open = |id: &ScanId| samples.iter().any(|sample| sample.id == id.sample);
         self.scans.retain(|id, _| is_open(id));
         for sample in samples.iter().filter(|sample| sample.visible) {
-            let derived = self.scans.entry(sample.scan_id()).or_default();
-            derived.refresh_curves(sample.scan(), view, columns);
+            for (wavelength, scan) in sample.plotted() {
+                let derived = self.scans.entry(sample.id_of(wavelength)).or_default();
+                derived.refresh_curves(scan, view, columns);
+            }
         }
         let mut active = samples.iter().filter(|sample| Some(sample.id) == active);
         if let Some(sample) = active.next() {

@@ -155,8 +155,9 @@ impl State {
     /// The samples that a figure shows.
     fn layers(&self) -> Result<Vec<FigureLayer>, ExportError> {
         let layers: Vec<FigureLayer> = self
-            .visible()
-            .map(|sample| FigureLayer::new(sample, self.family_of(sample)))
+            .plotted()
+            .into_iter()
+            .map(|plotted| FigureLayer::new(plotted.sample, plotted.scan, plotted.family))
             .collect();
         if layers.iter().all(|layer| layer.incidences.is_empty()) {
             return Err(ExportError::EmptyFigure);

@@ -64,6 +64,19 @@ pub enum Effect {
     Quit,
 }
 
+/// A scan in the plot.
+#[derive(Debug, Clone, Copy)]
+pub struct Plotted<'a> {
+    /// Its identifier.
+    pub id: ScanId,
+    /// Its sample.
+    pub sample: &'a Sample,
+    /// The scan.
+    pub scan: &'a Scan,
+    /// Its colour family; `None` for a single scan.
+    pub family: Option<usize>,
+}
+
 /// The samples, the settings and the fits.
 #[derive(Debug, Default)]
 pub struct State {
@@ -200,10 +213,35 @@ impl State {
         self.samples.iter().filter(|sample| sample.visible)
     }
 
-    /// The colour family of a sample. `None` for a single sample, whose incidences have colours
-    /// from all families.
+    /// The colour family of the current scan of a sample. `None` for a single scan, whose incidences
+    /// have colours from all families.
     pub fn family_of(&self, sample: &Sample) -> Option<usize> {
-        (self.samples.len() > 1).then_some(sample.family)
+        let is_single = self.samples.len() == 1 && sample.plotted().count() == 1;
+        (!is_single).then_some(sample.family)
+    }
+
+    /// The plotted scans of the visible samples, each with its sample and its colour family. Those
+    /// beside the current one of a sample have families that no sample has.
+    pub fn plotted(&self) -> Vec<Plotted<'_>> {
+        let families = self.samples.iter().map(|sample| sample.family);
+        let mut free = families.max().map_or(0, |family| family + 1)..;
+        let mut all = Vec::new();
+        for sample in self.visible() {
+            for (wavelength, scan) in sample.plotted() {
+                let family = if wavelength == sample.current {
+                    self.family_of(sample)
+                } else {
+                    free.next()
+                };
+                all.push(Plotted {
+                    id: sample.id_of(wavelength),
+                    sample,
+                    scan,
+                    family,
+                });
+            }
+        }
+        all
     }
 
     /// Whether the worker is fitting.

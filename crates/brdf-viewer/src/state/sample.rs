@@ -83,6 +83,8 @@ pub struct Scan {
     /// The channel of a table of which all bins are fitted; `measurements` are then those that are
     /// shown.
     pub table: Option<LazyScan>,
+    /// Whether the scan is plotted beside the current one of its sample.
+    pub is_beside: bool,
     /// The incidences in ascending order.
     pub incidences: Vec<Incidence>,
     /// The azimuths of the planes that contain readings, in radians.
@@ -179,6 +181,7 @@ impl Scan {
             measurements,
             left_out: BTreeSet::new(),
             table: None,
+            is_beside: false,
             planes,
             parameters,
             committed: parameters,
@@ -394,6 +397,21 @@ impl Sample {
         self.scans.iter().any(|scan| scan.last_fit.is_some())
     }
 
+    /// The scans that are plotted, with their indices: the current one, and those beside it.
+    pub fn plotted(&self) -> impl Iterator<Item = (usize, &Scan)> {
+        let current = std::iter::once((self.current, self.scan()));
+        let all = self.scans.iter().enumerate();
+        current.chain(all.filter(|(i, scan)| scan.is_beside && *i != self.current))
+    }
+
+    /// The name of a scan in a plot: that of the sample, with the wavelength where several are plotted.
+    pub fn name_of(&self, scan: &Scan) -> String {
+        match scan.wavelength_um() {
+            Some(um) if self.plotted().count() > 1 => format!("{}, {um} µm", self.name),
+            _ => self.name.clone(),
+        }
+    }
+
     /// The current scan.
     pub fn scan(&self) -> &Scan {
         &self.scans[self.current]
@@ -414,7 +432,8 @@ impl Sample {
         (0..self.scans.len()).map(|wavelength| self.id_of(wavelength))
     }
 
-    fn id_of(&self, wavelength: usize) -> ScanId {
+    /// The identifier of a scan, by the index of its wavelength.
+    pub fn id_of(&self, wavelength: usize) -> ScanId {
         ScanId {
             sample: self.id,
             wavelength,

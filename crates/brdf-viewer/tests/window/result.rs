@@ -127,6 +127,22 @@ fn wavelengths_are_a_list_and_a_table() {
 }
 
 #[test]
+fn several_wavelengths_are_plotted_together() {
+    let mut window = with_z307();
+    click(&mut window, "plot 0.85223 µm as well");
+    let state = &window.state().state;
+    let families: Vec<Option<usize>> = state.plotted().iter().map(|one| one.family).collect();
+    assert_eq!(families, [Some(0), Some(1)]);
+    let ground = brdf_fit::plot::Ground::Light;
+    for family in families {
+        let colour = brdf_viewer::theme::colour(family, 4, 5, ground);
+        assert!(!painted_lines(&window, colour).is_empty(), "{family:?}");
+    }
+    click(&mut window, "plot 0.85223 µm as well");
+    assert_eq!(window.state().state.plotted().len(), 1);
+}
+
+#[test]
 fn a_fit_on_request_interrupts_the_automatic_ones() {
     let mut window = window();
     window.state_mut().state.apply(Intent::OpenBytes(

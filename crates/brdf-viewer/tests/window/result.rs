@@ -53,11 +53,12 @@ fn the_model_that_suffices_is_taken_with_a_button() {
 
 /// A lobe that no model of the hierarchy has: readings that alternate.
 fn bad_scan() -> String {
+    use std::fmt::Write as _;
     let mut text = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
     for psi in [10, 30, 50, 70] {
         for (i, theta) in (-80..=80).step_by(10).enumerate() {
             let value = if i % 2 == 0 { 0.9 } else { 0.0001 };
-            text += &format!("{psi},{theta},{value}\n");
+            let _ = writeln!(text, "{psi},{theta},{value}");
         }
     }
     text

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Drives the release viewer on a display of its own, as a user would: opens a sample, drags a slider,
-# fits, exports, closes; and takes the pictures of the README on the way.
+# fits, leaves a reading out, pins curves, copies, exports, closes, and starts again; and takes the
+# pictures of the README and of docs/viewer.md on the way.
 #
 #   tests/desktop.sh [FOLDER]      writes FOLDER/viewer-*.png (docs where none is given)
 #
-# Needs: xvfb xdotool imagemagick (apt-get install xvfb libxcursor1 libxi6 libxkbcommon-x11-0 xdotool
-# imagemagick).
+# Needs: xvfb xdotool imagemagick xclip (apt-get install xvfb libxcursor1 libxi6 libxkbcommon-x11-0
+# xdotool imagemagick xclip).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 pictures=$(realpath "${1:-docs}")
@@ -24,11 +25,14 @@ display=$!
 trap 'kill $display 2>/dev/null || true; rm -rf "$work"' EXIT
 sleep 1
 
-"$viewer" "$sample" --size 1280x800 --theme light &
-program=$!
-window=$(timeout 30 xdotool search --sync --onlyvisible --name '^brdf-viewer$' | tail -n 1)
-xdotool windowfocus "$window"
-sleep 2
+start() { # the viewer with files, until it has fitted them
+    "$viewer" "$@" --size 1280x800 --theme light &
+    program=$!
+    window=$(timeout 30 xdotool search --sync --onlyvisible --name '^brdf-viewer$' | tail -n 1)
+    xdotool windowfocus "$window"
+    sleep 4
+}
+start "$sample"
 
 key() { xdotool key --window "$window" --clearmodifiers "$1"; sleep "${2:-0.6}"; }
 picture() { xdotool mousemove 640 795; sleep 0.5; import -window root "$pictures/viewer-$1.png"; }
@@ -44,7 +48,7 @@ write() { # what is asked for by a key, to a path typed into the box
 key ctrl+l                                  # logarithmic
 key ctrl+d                                  # residuals
 import -window root "$work/before.png"
-xdotool mousemove 1040 132 mousedown 1      # the slider of k1, to the right
+xdotool mousemove 1028 345 mousedown 1      # the slider of k1, to the right
 for _ in 1 2 3 4 5 6 7 8; do xdotool mousemove_relative -- 3 0; sleep 0.05; done
 xdotool mouseup 1
 sleep 0.5
@@ -52,8 +56,16 @@ import -window root "$work/dragged.png"
 different=$(compare -metric AE "$work/before.png" "$work/dragged.png" null: 2>&1 || true)
 [ "${different%%.*}" -gt 2000 ] || { echo "the slider moved nothing: $different pixels" >&2; exit 1; }
 
-key F5 2                                    # fit in both stages
+key F5 3                                    # fit in both stages
 picture fitted
+key ctrl+r                                  # choose readings: the brightest of 70 deg
+xdotool mousemove 399 69 click 1
+sleep 1
+key ctrl+r
+key F5 3
+key ctrl+p                                  # pin
+picture left-out
+key ctrl+shift+p
 key ctrl+2                                  # panels, dark
 key ctrl+d
 key F9
@@ -66,6 +78,9 @@ write ctrl+shift+e "$work/figure.png"
 write ctrl+s "$work/fit.json"
 write ctrl+shift+s "$work/curves.csv"
 grep -q '"e_percent"' "$work/fit.json"
+grep -A1 '"left_out"' "$work/fit.json" | grep -q '[0-9]' || { echo "no reading was left out" >&2; exit 1; }
+key ctrl+shift+c                            # the table of parameters
+xclip -o -selection clipboard | grep -q '^k1' || { echo "nothing was copied" >&2; exit 1; }
 grep -q '<svg' "$work/figure.svg"
 [ "$(wc -l < "$work/curves.csv")" -eq 113 ]
 
@@ -77,4 +92,12 @@ echo "processor time in 5 s without any event: $idle ticks"
 key ctrl+q
 wait "$program"
 [ -s "$work/brdf-viewer/state.json" ]
-echo "opened, dragged, fitted, exported, closed: pictures in $pictures"
+
+start                                       # the session of before
+write ctrl+s "$work/again.json"
+numbers() { grep -E '"(k1|k2|kd|e_percent)":|"left_out"' -A1 "$1" | grep -v seconds | head -n 12; }
+[ "$(numbers "$work/fit.json")" = "$(numbers "$work/again.json")" ] ||
+    { echo "the session did not come back" >&2; exit 1; }
+key ctrl+q
+wait "$program"
+echo "opened, dragged, fitted, chosen, pinned, copied, exported, closed, restored: pictures in $pictures"

@@ -16,7 +16,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use rand::rngs::StdRng;
 use rand::{RngExt as _, SeedableRng as _};
 
-const KEYS: [Key; 33] = [
+const KEYS: [Key; 34] = [
     Key::Tab,
     Key::Enter,
     Key::Escape,
@@ -50,6 +50,7 @@ const KEYS: [Key; 33] = [
     Key::S,
     Key::E,
     Key::R,
+    Key::P,
 ];
 
 /// Growth of memory after the first tenth of the test that counts as a leak, in bytes.
@@ -73,6 +74,7 @@ fn random_events_do_not_crash_the_window() {
     let mut random = StdRng::seed_from_u64(seed);
     let settings = || Settings::load(Some(folder.path().join("settings/state.json")));
     let mut window = window_with([1280.0, 800.0], NoDialogs, settings());
+    window.state_mut().state.fit_settings.on_opening = true;
     let scan = folder.path().join("scan.csv");
     std::fs::write(&scan, z307()).unwrap();
     let started = Instant::now();
@@ -209,7 +211,7 @@ fn limit_samples(window: &mut Window, random: &mut StdRng) {
     let state = &mut window.state_mut().state;
     while state.samples.len() > 6 {
         let id = state.samples[random.random_range(0..state.samples.len())].id;
-        state.apply(Intent::Close(id));
+        state.apply(Intent::CloseUnsaved(vec![id]));
     }
     if state.samples.is_empty() {
         state.apply(Intent::OpenBuiltIn(random.random_range(0..4)));

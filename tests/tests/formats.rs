@@ -94,6 +94,36 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
                 "",
             ],
         ),
+        (
+            "scan.xlsx",
+            Format::Workbook,
+            &[],
+            [
+                "the sheet \"Scan\" is read, \"Notes\" is not",
+                "64 cells have the value of the cell that they are merged with",
+                "4 readings not taken (no value) are left out",
+            ],
+        ),
+        (
+            "goniometer.xls",
+            Format::Workbook,
+            &[],
+            [
+                "the sheet \"Goniometer\" is read, \"Blank\" is not",
+                "BRDF cos theta is divided by cos theta",
+                "4 readings not taken (empty cells) are left out",
+            ],
+        ),
+        (
+            "percent.ods",
+            Format::Workbook,
+            &[],
+            [
+                "the sheet \"Scan\" is read, \"Raw\" (hidden) is not",
+                "reflectance factors are divided by pi",
+                "4 readings not taken (no value) are left out",
+            ],
+        ),
     ] {
         let (printed, document) = fitted(&file(name), options);
         assert_parameters(&document, &[(Some(0.62), SAND_YELLOW)]);
@@ -251,7 +281,7 @@ fn a_file_of_no_known_format_says_which_are_known() {
         &[],
         ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
          brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
-         goniometer",
+         goniometer, workbook",
     );
 }
 

@@ -47,8 +47,8 @@ impl Measurements {
         let mut head = Vec::new();
         let mut beginning = file.by_ref().take(HEAD as u64);
         beginning.read_to_end(&mut head).map_err(io)?;
-        check_head(path, &head, options)?;
-        let bytes = read_bytes(head, file, size).map_err(io)?;
+        let is_text = check_head(path, &head, options)? == Data::Text;
+        let bytes = read_bytes(head, file, size, is_text).map_err(io)?;
         from_bytes(path, &bytes, options)
     }
 
@@ -68,10 +68,9 @@ impl Measurements {
         let (mut reader, mut head) = (reader, Vec::new());
         let mut beginning = reader.by_ref().take(HEAD as u64);
         beginning.read_to_end(&mut head).map_err(io)?;
-        if !may_be_merl(&head, options) {
-            check_head(path, &head, options)?;
-        }
-        let bytes = read_bytes(head, reader, 0).map_err(io)?;
+        let is_text =
+            !may_be_merl(&head, options) && check_head(path, &head, options)? == Data::Text;
+        let bytes = read_bytes(head, reader, 0, is_text).map_err(io)?;
         from_bytes(path, &bytes, options)
     }
 
@@ -90,17 +89,24 @@ impl Measurements {
     }
 }
 
-/// Refuses a file by its first block: one of another program, or binary data.
-fn check_head(path: &Path, head: &[u8], options: &ReadOptions) -> Result<(), ReadError> {
+/// What a file holds by its first block.
+#[derive(PartialEq, Eq)]
+enum Data {
+    Binary,
+    Text,
+}
+
+/// Refuses a file by its first block: one of another program, or binary data of no known format.
+fn check_head(path: &Path, head: &[u8], options: &ReadOptions) -> Result<Data, ReadError> {
     let reader = options.format.map(Reader::of);
     let reader = reader.or_else(|| detect::by_mark(head));
     if reader.is_some_and(Reader::is_binary) {
-        return Ok(());
+        return Ok(Data::Binary);
     }
     match foreign(head).filter(|_| reader.is_none()) {
         Some(message) => Err(ReadError::file(path, message)),
-        None if head.iter().all(u8::is_ascii_whitespace) => Ok(()),
-        None => Text::new(path, head).map(|_| ()),
+        None if head.iter().all(u8::is_ascii_whitespace) => Ok(Data::Text),
+        None => Text::new(path, head).map(|_| Data::Text),
     }
 }
 

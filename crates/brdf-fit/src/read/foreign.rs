@@ -3,12 +3,8 @@
 use super::text::lines;
 
 /// How a file begins, what it is, and what to do.
-const BINARY: [(&[u8], &str); 13] = [
-    (b"\xd0\xcf\x11\xe0", "an Excel workbook (.xls)"),
-    (
-        b"PK\x03\x04",
-        "a zip archive, such as an Excel or ODS workbook",
-    ),
+const BINARY: [(&[u8], &str); 12] = [
+    (b"PK\x03\x04", "a zip archive"),
     (b"tensor_file", "an RGL tensor file of a measured BSDF"),
     (b"\x89HDF", "an HDF5 file"),
     (b"CDF\x01", "a NetCDF file"),
@@ -43,22 +39,10 @@ pub(super) fn foreign(head: &[u8]) -> Option<String> {
     let expected = "expected readings as a text table (save a sheet as CSV) or in a known format";
     let binary = BINARY.iter().find(|(start, _)| head.starts_with(start));
     let what = match binary {
-        Some((b"PK\x03\x04", _)) => Some(archive(head)),
         Some((_, what)) => Some(*what),
         None => text(head),
     };
     what.map(|what| format!("is {what}, which cannot be read: {expected}"))
-}
-
-fn archive(head: &[u8]) -> &'static str {
-    let has = |name: &[u8]| head.windows(name.len()).any(|window| window == name);
-    if has(b"opendocument.spreadsheet") {
-        "an ODS workbook"
-    } else if has(b"xl/") || has(b"[Content_Types].xml") {
-        "an Excel workbook (.xlsx)"
-    } else {
-        "a zip archive"
-    }
 }
 
 /// What a text of another program is. Of several marks the most telling one is taken: an XML file of a
@@ -87,12 +71,7 @@ mod tests {
     #[test]
     fn files_of_other_programs_are_called_by_their_names() {
         for (head, name) in [
-            (&b"\xd0\xcf\x11\xe0\xa1\xb1"[..], "Excel workbook (.xls)"),
-            (b"PK\x03\x04....[Content_Types].xml", "(.xlsx)"),
-            (
-                b"PK\x03\x04mimetypeapplication/vnd.oasis.opendocument.spreadsheet",
-                "ODS",
-            ),
+            (&b"PK\x03\x04....[Content_Types].xml"[..], "zip archive"),
             (b"tensor_file\0\x01", "RGL"),
             (b"%PDF-1.7", "PDF"),
             (b"<?xml version=\"1.0\"?>\n<WindowElement>", "WINDOW XML"),

@@ -23,6 +23,7 @@ mod number;
 mod options;
 mod reader;
 mod text;
+pub mod workbook;
 pub mod zemax;
 
 pub use error::{ReadError, Remedy};

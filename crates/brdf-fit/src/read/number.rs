@@ -58,6 +58,11 @@ pub(super) fn was_not_taken(field: &[u8]) -> bool {
         .any(is)
 }
 
+/// The text before a percent sign at the end of a field; `None` where there is no such sign.
+pub(super) fn without_percent_sign(field: &[u8]) -> Option<&[u8]> {
+    field.trim_ascii_end().strip_suffix(b"%")
+}
+
 /// Whether a value is one that programs write for a reading that was not taken. As f_r it is impossible.
 pub(super) fn looks_missing(value: f64) -> bool {
     [-99.0, -999.0, -9999.0, -99999.0].contains(&value)

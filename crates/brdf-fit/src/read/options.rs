@@ -5,8 +5,11 @@ use std::path::Path;
 use super::error::ReadError;
 use crate::scan::{Convention, Format, Side};
 
-/// The keys of comments that the readings of a table depend on.
-pub const DECLARED_KEYS: [&str; 12] = [
+/// The key of the sheet of a workbook.
+pub(super) const SHEET: &str = "sheet";
+
+/// The keys of comments that the readings of a table depend on, and that of the sheet of a workbook.
+pub const DECLARED_KEYS: [&str; 13] = [
     "quantity",
     "unit",
     "factor",
@@ -19,6 +22,7 @@ pub const DECLARED_KEYS: [&str; 12] = [
     "refractive_index",
     "polarisation",
     "columns",
+    SHEET,
 ];
 
 /// How a file is read.

@@ -4,15 +4,16 @@
 use std::path::Path;
 
 use super::error::ReadError;
-use super::options::ReadOptions;
+use super::options::{ReadOptions, SHEET};
 use super::text::Text;
-use super::{astm, black_lab, csv, goniometer, merl, zemax};
+use super::{astm, black_lab, csv, goniometer, merl, workbook, zemax};
 use crate::scan::{Format, Measurements};
 
 /// All readers, in the order in which the content of a file is compared with their formats: those
 /// whose files carry a mark of the format, then tables, which are known by the form of their lines.
-pub(super) const READERS: [Reader; 6] = [
+pub(super) const READERS: [Reader; 7] = [
     merl::READER,
+    workbook::READER,
     astm::READER,
     black_lab::READER,
     zemax::READER,
@@ -40,6 +41,9 @@ pub(super) enum Content {
     Table(fn(Text<'_>, &ReadOptions) -> Read),
     /// A text that states its quantities and units itself.
     Text(fn(Text<'_>, &ReadOptions) -> Read),
+    /// The bytes of a binary file with tables, of which the options may declare the columns and the
+    /// comments.
+    Tables(fn(&Path, &[u8], &ReadOptions) -> Read),
     /// The bytes of a binary file that states its quantities and units itself.
     Bytes(fn(&Path, &[u8], &ReadOptions) -> Read),
 }
@@ -60,7 +64,7 @@ impl Reader {
 
     /// Whether the files are binary data.
     pub(super) fn is_binary(&self) -> bool {
-        matches!(self.content, Content::Bytes(_))
+        matches!(self.content, Content::Bytes(_) | Content::Tables(_))
     }
 
     /// The scan in the bytes of a whole file.
@@ -76,30 +80,35 @@ impl Reader {
             Content::Text(read) => {
                 read(Text::new(path, bytes)?, options).map_err(|error| error.with_remedy(None))
             }
-            Content::Bytes(read) => read(path, bytes, options),
+            Content::Bytes(read) | Content::Tables(read) => read(path, bytes, options),
         }
     }
 
     /// # Errors
     ///
-    /// The options declare columns or comments, which files of the format do not have.
+    /// The options declare what files of the format do not have: columns, comments or sheets.
     pub(super) fn check_options(
         &self,
         path: &Path,
         options: &ReadOptions,
     ) -> Result<(), ReadError> {
+        let sheet = options.declarations.iter().find(|(key, _)| key == SHEET);
         let declared = options.columns.first().or(options.declarations.first());
-        match (&self.content, declared) {
-            (Content::Table(_), _) | (_, None) => Ok(()),
-            (_, Some((key, value))) => {
-                let name = self.format.name();
-                let message = format!(
-                    "\"{key}={value}\" cannot be declared: the format {name} states its columns, \
-                     quantities and units itself"
-                );
-                Err(ReadError::file(path, message))
+        let name = self.format.name();
+        let (declared, why) = match self.content {
+            Content::Tables(_) => (None, String::new()),
+            Content::Table(_) => (sheet, format!("files of the format {name} have no sheets")),
+            Content::Text(_) | Content::Bytes(_) => {
+                let why =
+                    format!("the format {name} states its columns, quantities and units itself");
+                (declared, why)
             }
-        }
+        };
+        let Some((key, value)) = declared else {
+            return Ok(());
+        };
+        let message = format!("\"{key}={value}\" cannot be declared: {why}");
+        Err(ReadError::file(path, message))
     }
 }
 
@@ -121,7 +130,9 @@ mod tests {
             declarations: vec![("unit".to_owned(), "percent".to_owned())],
             ..ReadOptions::default()
         };
-        for reader in READERS.iter().filter(|reader| reader.has_mark()) {
+        let states_all =
+            |reader: &&Reader| !matches!(reader.content, Content::Table(_) | Content::Tables(_));
+        for reader in READERS.iter().filter(states_all) {
             let error = reader.read(Path::new("a"), b"x", &options).unwrap_err();
             let message = error.to_string();
             assert!(
@@ -130,5 +141,27 @@ mod tests {
             );
             assert!(message.contains(reader.format.name()), "{message}");
         }
+    }
+
+    #[test]
+    fn only_workbooks_have_sheets() {
+        let options = ReadOptions {
+            declarations: vec![("sheet".to_owned(), "A".to_owned())],
+            ..ReadOptions::default()
+        };
+        let table = b"psi_deg,theta_deg,brdf_per_sr\n10,20,0.1\n";
+        for format in [Format::Csv, Format::Goniometer] {
+            let error = Reader::of(format).read(Path::new("a"), table, &options);
+            let message = error.unwrap_err().to_string();
+            assert!(
+                message.contains("\"sheet=A\" cannot be declared: files of the format"),
+                "{message}"
+            );
+        }
+        assert!(
+            Reader::of(Format::Workbook)
+                .check_options(Path::new("a"), &options)
+                .is_ok()
+        );
     }
 }

@@ -21,11 +21,12 @@ pub(super) const HEAD: usize = 65_536;
 const CHUNK: u64 = 1 << 20;
 
 /// Reads a file to its end, after the bytes of it that were read before. Stops early once it is
-/// clear that the file is too large or not text with lines.
+/// clear that the file is too large or, if it is text, has no lines.
 pub(super) fn read_bytes(
     mut before: Vec<u8>,
     mut reader: impl Read,
     expected_size: u64,
+    is_text: bool,
 ) -> std::io::Result<Vec<u8>> {
     let capacity = usize::try_from(expected_size.min(MAX_FILE)).unwrap_or(0);
     before.reserve(capacity.saturating_sub(before.len()) + 1);
@@ -34,7 +35,7 @@ pub(super) fn read_bytes(
             break;
         }
         let tail = &before[before.len().saturating_sub(MAX_LINE + 1)..];
-        if tail.len() > MAX_LINE && !tail.iter().any(|&byte| is_line_end(byte)) {
+        if is_text && tail.len() > MAX_LINE && !tail.iter().any(|&byte| is_line_end(byte)) {
             break;
         }
     }

@@ -24,17 +24,20 @@ pub enum Format {
     BlackLab,
     /// Incidences in columns, views in rows: [`read::goniometer`](crate::read::goniometer).
     Goniometer,
+    /// A sheet of a workbook, Excel or OpenDocument: [`read::workbook`](crate::read::workbook).
+    Workbook,
 }
 
 impl Format {
     /// All formats, with their names in options and files.
-    pub const NAMED: [(Self, &str); 6] = [
+    pub const NAMED: [(Self, &str); 7] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
         (Self::Astm, "astm"),
         (Self::Zemax, "zemax"),
         (Self::BlackLab, "black-lab"),
         (Self::Goniometer, "goniometer"),
+        (Self::Workbook, "workbook"),
     ];
 
     /// The name in options and files.

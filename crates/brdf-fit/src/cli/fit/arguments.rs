@@ -127,9 +127,9 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
     pub(super) g2: Option<AngleWeight>,
 
-    /// Format of the files: csv, merl, astm (E1392, E2387), zemax (tabular BSDF), black-lab, or
-    /// goniometer (incidence angles in columns, view angles in rows) [default: detected by content,
-    /// then by extension]
+    /// Format of the files: csv, merl, astm (E1392, E2387), zemax (tabular BSDF), black-lab,
+    /// goniometer (incidence angles in columns, view angles in rows), or workbook (Excel, OpenDocument)
+    /// [default: detected by content, then by extension]
     #[arg(long, value_name = "FORMAT")]
     pub(super) format: Option<Format>,
 
@@ -142,7 +142,8 @@ pub(in crate::cli) struct Arguments {
     pub(super) columns: Option<Pairs>,
 
     /// State a key in place of the comments of the files, such as quantity=reflectance_factor,
-    /// unit=percent, missing=-999, psi_deg=30 or wavelength_nm=632.8; may be repeated
+    /// unit=percent, missing=-999, psi_deg=30 or wavelength_nm=632.8, or the sheet of a workbook,
+    /// sheet=NAME; may be repeated
     #[arg(long, value_name = "KEY=VALUE", value_parser = declaration)]
     pub(super) declare: Vec<(String, String)>,
 

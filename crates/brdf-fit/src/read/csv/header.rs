@@ -23,7 +23,7 @@ const OWN_NAMES: [&str; 7] = [
 ];
 
 /// Whether a line names the columns of a table. Some programs write the header behind a `#`.
-pub(super) fn is_header(line: &[u8]) -> bool {
+pub(super) fn is_header(line: &[u8], renamed: &[(String, String)]) -> bool {
     let comment = comment_of(line);
     let (line, needs_psi) = match comment.and_then(after_format) {
         Some(names) => (names, false),
@@ -34,7 +34,7 @@ pub(super) fn is_header(line: &[u8]) -> bool {
     if line.iter().filter(is_letter).take(6).count() < 6 {
         return false;
     }
-    header_of(line, &[]).is_some_and(|(_, columns)| is_complete(&columns, needs_psi))
+    header_of(line, renamed).is_some_and(|(_, columns)| is_complete(&columns, needs_psi))
 }
 
 /// The names of the columns in a comment `format: theta phi DSF`.

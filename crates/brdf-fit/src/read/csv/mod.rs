@@ -41,6 +41,8 @@
 //!
 //! [`ReadOptions::declarations`](super::ReadOptions::declarations) states such keys in place of the file.
 //!
+//! A reading with a percent sign, `5 %`, is 0.05 in a column of reflectance factors and 5 in one in percent.
+//!
 //! Readings that were not taken (blank, `-`, `NaN`, `n/a`) and those at or beyond 90 deg are left out and
 //! counted. A negative incidence angle is on the other side of the normal: the view angle is mirrored. A
 //! decimal comma, the minus sign of typesetting and the exponent of Fortran (`1.1D-01`) are read, as are a
@@ -72,9 +74,15 @@ use row::{Found, IndexColumn, Row, RowReader};
 pub(super) const READER: Reader = Reader {
     format: Format::Csv,
     extensions: &["csv", "tsv"],
-    recognises: |bytes| head_lines(bytes).any(is_header),
+    recognises: |bytes| has_header(bytes, &[]),
     content: Content::Table(read),
 };
+
+/// Whether a text begins with a table whose header names angles and readings, with the names of columns
+/// that are `renamed`.
+pub(super) fn has_header(head: &[u8], renamed: &[(String, String)]) -> bool {
+    head_lines(head).any(|line| is_header(line, renamed))
+}
 
 /// Angles without a unit, all of which are below this, may be radians: a little above pi/2.
 const MAY_BE_RADIANS: f64 = 1.6;
@@ -157,7 +165,7 @@ fn read_all(
     path: &Path,
     convention: Convention,
 ) -> Result<Measurements, ReadError> {
-    let bytes = read_bytes(Vec::new(), reader, expected_size)
+    let bytes = read_bytes(Vec::new(), reader, expected_size, true)
         .map_err(|error| ReadError::io(path, error))?;
     let options = ReadOptions {
         theta_positive: Some(convention.theta_positive),

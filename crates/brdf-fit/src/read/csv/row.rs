@@ -6,11 +6,12 @@ use brdf_core::check_refractive_index;
 
 use super::header::Column;
 use super::roles::{AngleColumn, Readings, Roles};
-use crate::read::conversion::{LeftOut, Values};
+use crate::read::conversion::{Kind, LeftOut, Scale, Values};
 use crate::read::error::ReadError;
 use crate::read::names::{AngleForm, LengthUnit};
 use crate::read::number::{
     Field, is_angle, is_deviation, is_reading, is_wavelength, micrometres, was_not_taken,
+    without_percent_sign,
 };
 use crate::read::text::Text;
 use crate::scan::{Convention, Measurement, RefractiveIndex};
@@ -103,7 +104,7 @@ impl RowReader {
             });
             Ok(())
         };
-        let reading = |column| row.reading(column, self.missing);
+        let reading = |column| self.reading(row, column);
         match &self.roles.readings {
             Readings::One(column) => {
                 let value = reading(*column)?;
@@ -153,7 +154,7 @@ impl RowReader {
         if unit != LengthUnit::Nanometres {
             return Ok(Some(number));
         }
-        let text = row.fields.get(column).copied().unwrap_or_default();
+        let text = row.field(column);
         let um = micrometres(text).unwrap_or(number / 1000.0);
         if is_wavelength(um) {
             Ok(Some(um))
@@ -213,12 +214,46 @@ impl RowReader {
         }))
     }
 
+    /// The reading in a column; `None` where it was not taken.
+    fn reading(&self, row: &Row<'_>, column: usize) -> Result<Option<f64>, ReadError> {
+        match without_percent_sign(row.field(column)) {
+            Some(number) => self.percentage(row, column, number).map(Some),
+            None => row.reading(column, self.missing),
+        }
+    }
+
+    /// The reading in a field `5 %`, whose number is given without the sign: 5 in a column in percent, and
+    /// 0.05 in one of reflectance factors.
+    fn percentage(&self, row: &Row<'_>, column: usize, number: &[u8]) -> Result<f64, ReadError> {
+        let quantity = self.values.quantity;
+        let divisor = match (quantity.kind, quantity.scale) {
+            (Kind::ReflectanceFactor, Scale::Percent) => 1.0,
+            (Kind::ReflectanceFactor, Scale::One) => 100.0,
+            _ => {
+                let message = format!(
+                    "is a percentage: expected a number, because the column holds {quantity}"
+                );
+                return Err(row.error(column, message));
+            }
+        };
+        let field = Field {
+            text: number,
+            decimal_comma: true,
+        };
+        let name = &row.columns[column].name;
+        let expected = "expected a reading in percent";
+        let number = row
+            .text
+            .number(row.line, name, &field, expected, is_reading)?;
+        Ok(number / divisor)
+    }
+
     fn sigma(&self, row: &Row<'_>) -> Result<Option<f64>, ReadError> {
         // The standard deviation may be blank in single rows.
         let column = self
             .roles
             .sigma
-            .filter(|&column| !was_not_taken(row.fields.get(column).copied().unwrap_or_default()));
+            .filter(|&column| !was_not_taken(row.field(column)));
         column
             .map(|column| {
                 row.value(
@@ -262,6 +297,11 @@ impl Row<'_> {
         Ok((raw, degrees))
     }
 
+    /// The text in a column; empty where the row is shorter.
+    fn field(&self, column: usize) -> &[u8] {
+        self.fields.get(column).copied().unwrap_or_default()
+    }
+
     /// The number in a column for which `accepts` is true.
     fn value(
         &self,
@@ -271,26 +311,26 @@ impl Row<'_> {
     ) -> Result<f64, ReadError> {
         let name = &self.columns[column].name;
         self.text
-            .number(self.line, name, &self.field(column), expected, accepts)
+            .number(self.line, name, &self.number_field(column), expected, accepts)
     }
 
     /// The reading in a column; `None` where it was not taken.
     fn reading(&self, column: usize, missing: Option<f64>) -> Result<Option<f64>, ReadError> {
         let name = &self.columns[column].name;
         self.text
-            .reading(self.line, name, &self.field(column), missing)
+            .reading(self.line, name, &self.number_field(column), missing)
     }
 
-    fn field(&self, column: usize) -> Field<'_> {
+    fn number_field(&self, column: usize) -> Field<'_> {
         Field {
-            text: self.fields.get(column).copied().unwrap_or_default(),
+            text: self.field(column),
             // A comma that does not separate fields is a decimal comma.
             decimal_comma: true,
         }
     }
 
     fn error(&self, column: usize, message: impl Into<String>) -> ReadError {
-        let field = self.fields.get(column).copied().unwrap_or_default();
+        let field = self.field(column);
         self.text
             .value_error(self.line, &self.columns[column].name, field, message)
     }

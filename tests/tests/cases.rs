@@ -28,7 +28,13 @@ const AS_PAINT: Expected = Fits(ONE, 1e-4);
 
 const CASES: &[(&str, &[&str], Expected)] = &[
     ("00-reference/paint.csv", &[], AS_PAINT),
-    ("01-fred-tabulated/paint_fred.txt", &[], Message("FRED")),
+    ("01-fred-tabulated/paint_fred.txt", &[], AS_PAINT),
+    // A measured sample: the fit of the same readings in columns of ours.
+    (
+        "01-fred-tabulated/AnoBlackEC1onAlum.txt",
+        &[],
+        Fits(&[[0.091_136_7, 0.024_019_0, 0.160_772]], 1e-4),
+    ),
     ("02-speos-brdf/paint.brdf", &[], Message("Speos")),
     (
         "04-lighttools/paint_lighttools.txt",

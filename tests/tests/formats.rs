@@ -95,6 +95,17 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             ],
         ),
         (
+            "fred.txt",
+            Format::Fred,
+            &[],
+            [
+                "azimuths of the scatter directions are counted from the specular direction, on the \
+                 forward side",
+                "4 readings at or beyond 90 deg from the normal are left out",
+                "",
+            ],
+        ),
+        (
             "scan.xlsx",
             Format::Workbook,
             &[],
@@ -281,7 +292,7 @@ fn a_file_of_no_known_format_says_which_are_known() {
         &[],
         ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
          brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
-         goniometer, workbook",
+         goniometer, workbook, fred",
     );
 }
 

@@ -19,13 +19,12 @@ const BINARY: [(&[u8], &str); 12] = [
 ];
 
 /// Texts of other programs: how a line begins, and what the file is.
-const TEXT: [(&str, &str); 12] = [
+const TEXT: [(&str, &str); 11] = [
     ("<WindowElement", "an LBNL WINDOW XML file (Klems basis)"),
     ("<?xml", "an XML file"),
     ("<!DOCTYPE", "a web page"),
     ("<html", "a web page"),
     ("OPTIS - ", "an Ansys Speos surface file"),
-    ("type bsdf_data", "a FRED table of scatter data"),
     ("DataType:\tBRDF(RT", "an export of an RT-300S (.jdv)"),
     ("AOI ", "a LightTools table of a BSDF"),
     ("SSDD ", "a file of the Scatter and Surface Data Depot"),
@@ -76,7 +75,6 @@ mod tests {
             (b"%PDF-1.7", "PDF"),
             (b"<?xml version=\"1.0\"?>\n<WindowElement>", "WINDOW XML"),
             (b"OPTIS - brdf surface file v8.0\n", "Speos"),
-            (b"type bsdf_data\nformat angles=deg\n", "FRED"),
             (
                 b"# note\nSymmetry Asymmetric\nAOI 10\nPOI 0\n",
                 "LightTools",

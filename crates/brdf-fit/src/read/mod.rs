@@ -15,6 +15,7 @@ mod error;
 mod fields;
 mod file;
 mod foreign;
+pub mod fred;
 pub mod goniometer;
 mod lazy_scan;
 pub mod merl;

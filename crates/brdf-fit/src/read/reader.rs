@@ -6,17 +6,18 @@ use std::path::Path;
 use super::error::ReadError;
 use super::options::{ReadOptions, SHEET};
 use super::text::Text;
-use super::{astm, black_lab, csv, goniometer, merl, workbook, zemax};
+use super::{astm, black_lab, csv, fred, goniometer, merl, workbook, zemax};
 use crate::scan::{Format, Measurements};
 
 /// All readers, in the order in which the content of a file is compared with their formats: those
 /// whose files carry a mark of the format, then tables, which are known by the form of their lines.
-pub(super) const READERS: [Reader; 7] = [
+pub(super) const READERS: [Reader; 8] = [
     merl::READER,
     workbook::READER,
     astm::READER,
     black_lab::READER,
     zemax::READER,
+    fred::READER,
     csv::READER,
     goniometer::READER,
 ];

@@ -26,11 +26,13 @@ pub enum Format {
     Goniometer,
     /// A sheet of a workbook, Excel or OpenDocument: [`read::workbook`](crate::read::workbook).
     Workbook,
+    /// Tabulated BSDF of FRED: [`read::fred`](crate::read::fred).
+    Fred,
 }
 
 impl Format {
     /// All formats, with their names in options and files.
-    pub const NAMED: [(Self, &str); 7] = [
+    pub const NAMED: [(Self, &str); 8] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
         (Self::Astm, "astm"),
@@ -38,6 +40,7 @@ impl Format {
         (Self::BlackLab, "black-lab"),
         (Self::Goniometer, "goniometer"),
         (Self::Workbook, "workbook"),
+        (Self::Fred, "fred"),
     ];
 
     /// The name in options and files.

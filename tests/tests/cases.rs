@@ -48,7 +48,7 @@ const CASES: &[(&str, &[&str], Expected)] = &[
     ),
     ("07-pabopto-files/paint_10.dat", &[], Fits(ONE, 1e-3)),
     ("07-pabopto-files/paint_65.dat", &[], Fits(ONE, 1e-3)),
-    ("08-openmaterial-json/paint.xompt", &[], Message("JSON")),
+    ("08-openmaterial-json/paint.xompt", &[], AS_PAINT),
     (
         "11-wavelengths-in-columns/wide.csv",
         &[],

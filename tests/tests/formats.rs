@@ -106,6 +106,16 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             ],
         ),
         (
+            "open_material.xompt",
+            Format::OpenMaterial,
+            &["--n", "1.62"],
+            [
+                "azimuth 0 is the source's side",
+                "2 readings not taken (no value) are left out",
+                "4 readings at or beyond 90 deg from the normal are left out",
+            ],
+        ),
+        (
             "scan.xlsx",
             Format::Workbook,
             &[],
@@ -292,7 +302,7 @@ fn a_file_of_no_known_format_says_which_are_known() {
         &[],
         ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
          brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
-         goniometer, workbook, fred",
+         goniometer, workbook, fred, open-material",
     );
 }
 

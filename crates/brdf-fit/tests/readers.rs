@@ -64,6 +64,36 @@ fn valid_files_are_read() {
     }
 }
 
+#[test]
+fn each_file_is_known_by_its_content() {
+    for file in valid_files() {
+        let detected = Format::detect(&file, Path::new("a")).unwrap();
+        let read = Measurements::from_bytes("a", &file, &ReadOptions::default()).unwrap();
+        assert_eq!(detected, read.format);
+        // No mark of another format stands in it.
+        let others = Format::NAMED.map(|(format, _)| format);
+        let others = others.into_iter().filter(|format| *format != detected);
+        for format in others {
+            let options = ReadOptions {
+                format: Some(format),
+                ..ReadOptions::default()
+            };
+            let other = Measurements::from_bytes("a", &file, &options);
+            assert!(other.is_err(), "{} as {}", detected.name(), format.name());
+        }
+    }
+}
+
+#[test]
+fn a_document_in_one_long_line_is_read_to_its_end() {
+    let row = "[6.2e-7,0.5,0.5,0,0.1]";
+    let rows = vec![row; 5000].join(",");
+    let document = format!("{{\"brdf\":{{\"lookupTable\":[{rows}]}}}}");
+    let options = ReadOptions::default();
+    let scan = Measurements::from_stream("a", document.as_bytes(), &options).unwrap();
+    assert_eq!(scan.readings().len(), 5000);
+}
+
 /// A word that may replace a part of a file.
 fn word() -> impl Strategy<Value = Vec<u8>> {
     let known = [

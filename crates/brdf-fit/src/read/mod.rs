@@ -21,6 +21,7 @@ mod lazy_scan;
 pub mod merl;
 mod names;
 mod number;
+pub mod open_material;
 mod options;
 mod reader;
 mod text;

@@ -58,6 +58,16 @@ pub(super) fn was_not_taken(field: &[u8]) -> bool {
         .any(is)
 }
 
+/// The number times a power of ten, by a shift of the decimal point: 9.05e-7 shifted by 6 is 0.905.
+pub(super) fn shifted(number: f64, exponent: i32) -> f64 {
+    let scientific = format!("{number:e}");
+    let shifted = scientific.split_once('e').and_then(|(digits, before)| {
+        let before: i32 = before.parse().ok()?;
+        fast_float2::parse(format!("{digits}e{}", before + exponent)).ok()
+    });
+    shifted.unwrap_or(number * 10_f64.powi(exponent))
+}
+
 /// The text before a percent sign at the end of a field; `None` where there is no such sign.
 pub(super) fn without_percent_sign(field: &[u8]) -> Option<&[u8]> {
     field.trim_ascii_end().strip_suffix(b"%")

@@ -6,18 +6,19 @@ use std::path::Path;
 use super::error::ReadError;
 use super::options::{ReadOptions, SHEET};
 use super::text::Text;
-use super::{astm, black_lab, csv, fred, goniometer, merl, workbook, zemax};
+use super::{astm, black_lab, csv, fred, goniometer, merl, open_material, workbook, zemax};
 use crate::scan::{Format, Measurements};
 
 /// All readers, in the order in which the content of a file is compared with their formats: those
 /// whose files carry a mark of the format, then tables, which are known by the form of their lines.
-pub(super) const READERS: [Reader; 8] = [
+pub(super) const READERS: [Reader; 9] = [
     merl::READER,
     workbook::READER,
     astm::READER,
     black_lab::READER,
     zemax::READER,
     fred::READER,
+    open_material::READER,
     csv::READER,
     goniometer::READER,
 ];
@@ -45,7 +46,8 @@ pub(super) enum Content {
     /// The bytes of a binary file with tables, of which the options may declare the columns and the
     /// comments.
     Tables(fn(&Path, &[u8], &ReadOptions) -> Read),
-    /// The bytes of a binary file that states its quantities and units itself.
+    /// The bytes of a file that states its quantities and units itself: binary data, or text whose lines may
+    /// be of any length.
     Bytes(fn(&Path, &[u8], &ReadOptions) -> Read),
 }
 
@@ -63,7 +65,7 @@ impl Reader {
         !matches!(self.content, Content::Table(_))
     }
 
-    /// Whether the files are binary data.
+    /// Whether the files are other than text in lines.
     pub(super) fn is_binary(&self) -> bool {
         matches!(self.content, Content::Bytes(_) | Content::Tables(_))
     }

@@ -28,11 +28,13 @@ pub enum Format {
     Workbook,
     /// Tabulated BSDF of FRED: [`read::fred`](crate::read::fred).
     Fred,
+    /// Look-up table of ASAM OpenMATERIAL 3D: [`read::open_material`](crate::read::open_material).
+    OpenMaterial,
 }
 
 impl Format {
     /// All formats, with their names in options and files.
-    pub const NAMED: [(Self, &str); 8] = [
+    pub const NAMED: [(Self, &str); 9] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
         (Self::Astm, "astm"),
@@ -41,6 +43,7 @@ impl Format {
         (Self::Goniometer, "goniometer"),
         (Self::Workbook, "workbook"),
         (Self::Fred, "fred"),
+        (Self::OpenMaterial, "open-material"),
     ];
 
     /// The name in options and files.

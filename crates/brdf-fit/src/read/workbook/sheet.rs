@@ -5,6 +5,8 @@
 
 use std::fmt::Write as _;
 
+use crate::read::number::shifted;
+
 /// The most cells of all sheets together that are read: more than a full sheet of six columns.
 const MAX_CELLS: usize = 10_000_000;
 
@@ -239,7 +241,7 @@ fn push_value(text: &mut String, value: &Value, is_first: bool) {
     // Writing to a string does not fail.
     let _ = match value {
         Value::Number(number) => write!(text, "{}", Shortest(*number)),
-        Value::Percent(number) => write!(text, "{}%", Shortest(hundredfold(*number))),
+        Value::Percent(number) => write!(text, "{}%", Shortest(shifted(*number, 2))),
         Value::NoResult => write!(text, "(formula without a result)"),
         // A space keeps the line from being a comment.
         Value::Error(error) if is_first => write!(text, " {error}"),
@@ -269,16 +271,6 @@ fn push_text(text: &mut String, cell: &str, is_first: bool) {
     if quoted {
         text.push('"');
     }
-}
-
-/// The number times 100, by a shift of the decimal point: 0.07 gives 7.
-fn hundredfold(number: f64) -> f64 {
-    let scientific = format!("{number:e}");
-    let shifted = scientific.split_once('e').and_then(|(digits, exponent)| {
-        let exponent: i32 = exponent.parse().ok()?;
-        format!("{digits}e{}", exponent + 2).parse().ok()
-    });
-    shifted.unwrap_or(number * 100.0)
 }
 
 /// A number with the fewest digits that give it back.
@@ -406,7 +398,7 @@ mod tests {
         fn percentages_are_shown_with_the_digits_of_the_number(digits in 0_u32..100_000) {
             let percent = f64::from(digits) / 1000.0;
             let number: f64 = format!("{digits}e-5").parse().unwrap();
-            prop_assert_eq!(hundredfold(number), percent);
+            prop_assert_eq!(shifted(number, 2), percent);
         }
     }
 }

@@ -116,6 +116,16 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             ],
         ),
         (
+            "tracepro.txt",
+            Format::TracePro,
+            &["--n", "1.62", "--phi-zero", "source"],
+            [
+                "azimuth 0 is the source's side, as stated",
+                "49 readings at or beyond 90 deg from the normal are left out",
+                "16 readings of the specular direction at another azimuth are left out",
+            ],
+        ),
+        (
             "scan.xlsx",
             Format::Workbook,
             &[],
@@ -302,7 +312,7 @@ fn a_file_of_no_known_format_says_which_are_known() {
         &[],
         ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
          brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
-         goniometer, workbook, fred, open-material",
+         goniometer, workbook, fred, open-material, tracepro",
     );
 }
 

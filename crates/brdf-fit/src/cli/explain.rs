@@ -50,6 +50,7 @@ pub(super) fn read(error: &ReadError) -> String {
         Some(Remedy::Columns) => "--columns \"NAME=ROLE\"",
         Some(Remedy::Incidence) => "or --declare psi_deg=30",
         Some(Remedy::ColumnAngles) => "or --declare columns=incidence",
+        Some(Remedy::PhiZero) => "--phi-zero source or --phi-zero forward",
         Some(Remedy::Sheet) => "--declare sheet=NAME",
         Some(Remedy::Missing) => "or --declare missing=VALUE",
         _ => return error.to_string(),

@@ -90,6 +90,18 @@ mod tests {
     }
 
     #[test]
+    fn a_file_has_the_mark_of_one_format_at_most() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/formats");
+        for entry in std::fs::read_dir(folder).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            let bytes = std::fs::read(&path).unwrap();
+            let marked = READERS.iter().filter(|reader| reader.has_mark());
+            let marked = marked.filter(|reader| (reader.recognises)(&bytes));
+            assert!(marked.count() <= 1, "{}", path.display());
+        }
+    }
+
+    #[test]
     fn the_extension_decides_where_the_content_does_not() {
         assert_eq!(detected("", "a.BSDF"), Some(Format::Zemax));
         assert_eq!(detected("x", "a.astm"), Some(Format::Astm));

@@ -67,6 +67,8 @@ pub enum Remedy {
     Incidence,
     /// The declaration `columns`: whether the angles of columns are incidences or azimuths.
     ColumnAngles,
+    /// [`ReadOptions::phi_zero`](super::ReadOptions::phi_zero): the side on which the azimuth is zero.
+    PhiZero,
     /// The declaration `sheet`: which sheet of a workbook is read.
     Sheet,
     /// The declaration `missing`: the number that stands for a reading that was not taken.

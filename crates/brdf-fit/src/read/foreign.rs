@@ -28,7 +28,7 @@ const TEXT: [(&str, &str); 11] = [
     ("DataType:\tBRDF(RT", "an export of an RT-300S (.jdv)"),
     ("AOI ", "a LightTools table of a BSDF"),
     ("SSDD ", "a file of the Scatter and Surface Data Depot"),
-    ("TracePro", "a TracePro property table"),
+    ("TracePro", "a TracePro property that is no table of a BSDF"),
     ("{", "a JSON document"),
     ("[{", "a JSON document"),
 ];

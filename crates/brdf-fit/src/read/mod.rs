@@ -25,6 +25,7 @@ pub mod open_material;
 mod options;
 mod reader;
 mod text;
+pub mod tracepro;
 pub mod workbook;
 pub mod zemax;
 

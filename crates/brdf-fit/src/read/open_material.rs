@@ -17,7 +17,7 @@
 //!
 //! | column | unit | |
 //! |---|---|---|
-//! | wavelength | m | |
+//! | wavelength | m | from 1e-9 to 0.01716 |
 //! | incident zenith angle | rad | from 0 to pi/2 |
 //! | exit zenith angle | rad | from 0 to pi/2 |
 //! | exit azimuth | rad | relative to the incident azimuth, which is 0 |
@@ -114,9 +114,9 @@ impl<'de> Visitor<'de> for RowVisitor {
     /// Checks the values here, where the reader of the document knows the line.
     fn visit_seq<A: SeqAccess<'de>>(self, mut row: A) -> Result<Row, A::Error> {
         let zenith = "expected radians from 0 to pi/2";
-        let wavelength = next(&mut row, "wavelength", "expected metres above 0", |m| {
-            m > 0.0
-        })?;
+        let metres = "expected metres from 1e-9 to 0.01716";
+        let accepts = |metres| (1e-9..=0.01716).contains(&metres);
+        let wavelength = next(&mut row, "wavelength", metres, accepts)?;
         let accepts = |angle| (0.0..=FRAC_PI_2 + 1e-6).contains(&angle);
         let psi = next(&mut row, "incident zenith", zenith, accepts)?;
         let theta = next(&mut row, "exit zenith", zenith, accepts)?;
@@ -339,6 +339,8 @@ mod tests {
             with("9.05e-07", "-1").contains("line 4: column wavelength: \"-1\" is out of range")
         );
         assert!(with("3.141592653589793", "180").contains("column exit azimuth: \"180\""));
+        assert!(with("1.55e-06", "1.55").contains("line 6: column wavelength: \"1.55\""));
+        assert!(with("9.05e-07", "1e308").contains("line 4: column wavelength"));
         assert!(
             with("0.25, 0.0, 0.1", "0.25, 0.0")
                 .contains("line 5: the row ends before the column BRDF")

@@ -6,12 +6,14 @@ use std::path::Path;
 use super::error::ReadError;
 use super::options::{ReadOptions, SHEET};
 use super::text::Text;
-use super::{astm, black_lab, csv, fred, goniometer, merl, open_material, workbook, zemax};
+use super::{
+    astm, black_lab, csv, fred, goniometer, merl, open_material, tracepro, workbook, zemax,
+};
 use crate::scan::{Format, Measurements};
 
 /// All readers, in the order in which the content of a file is compared with their formats: those
 /// whose files carry a mark of the format, then tables, which are known by the form of their lines.
-pub(super) const READERS: [Reader; 9] = [
+pub(super) const READERS: [Reader; 10] = [
     merl::READER,
     workbook::READER,
     astm::READER,
@@ -19,6 +21,7 @@ pub(super) const READERS: [Reader; 9] = [
     zemax::READER,
     fred::READER,
     open_material::READER,
+    tracepro::READER,
     csv::READER,
     goniometer::READER,
 ];

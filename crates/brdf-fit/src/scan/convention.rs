@@ -30,11 +30,14 @@ pub enum Format {
     Fred,
     /// Look-up table of ASAM OpenMATERIAL 3D: [`read::open_material`](crate::read::open_material).
     OpenMaterial,
+    /// Table of BSDF of a TracePro surface property: [`read::tracepro`](crate::read::tracepro).
+    #[serde(rename = "tracepro")]
+    TracePro,
 }
 
 impl Format {
     /// All formats, with their names in options and files.
-    pub const NAMED: [(Self, &str); 9] = [
+    pub const NAMED: [(Self, &str); 10] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
         (Self::Astm, "astm"),
@@ -44,6 +47,7 @@ impl Format {
         (Self::Workbook, "workbook"),
         (Self::Fred, "fred"),
         (Self::OpenMaterial, "open-material"),
+        (Self::TracePro, "tracepro"),
     ];
 
     /// The name in options and files.

@@ -126,6 +126,16 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             ],
         ),
         (
+            "specular.ssdd",
+            Format::Ssdd,
+            &[],
+            [
+                "scatter angles about the specular ray are converted to view angles",
+                "the specular reflectance is not read",
+                "16 readings with the value of the same direction before are left out",
+            ],
+        ),
+        (
             "scan.xlsx",
             Format::Workbook,
             &[],
@@ -312,7 +322,7 @@ fn a_file_of_no_known_format_says_which_are_known() {
         &[],
         ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
          brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
-         goniometer, workbook, fred, open-material, tracepro",
+         goniometer, workbook, fred, open-material, tracepro, ssdd",
     );
 }
 

@@ -19,7 +19,7 @@ const BINARY: [(&[u8], &str); 12] = [
 ];
 
 /// Texts of other programs: how a line begins, and what the file is.
-const TEXT: [(&str, &str); 11] = [
+const TEXT: [(&str, &str); 10] = [
     ("<WindowElement", "an LBNL WINDOW XML file (Klems basis)"),
     ("<?xml", "an XML file"),
     ("<!DOCTYPE", "a web page"),
@@ -27,7 +27,6 @@ const TEXT: [(&str, &str); 11] = [
     ("OPTIS - ", "an Ansys Speos surface file"),
     ("DataType:\tBRDF(RT", "an export of an RT-300S (.jdv)"),
     ("AOI ", "a LightTools table of a BSDF"),
-    ("SSDD ", "a file of the Scatter and Surface Data Depot"),
     ("TracePro", "a TracePro property that is no table of a BSDF"),
     ("{", "a JSON document"),
     ("[{", "a JSON document"),

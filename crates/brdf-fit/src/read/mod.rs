@@ -24,6 +24,7 @@ mod number;
 pub mod open_material;
 mod options;
 mod reader;
+pub mod ssdd;
 mod text;
 pub mod tracepro;
 pub mod workbook;

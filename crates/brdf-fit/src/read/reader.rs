@@ -7,13 +7,13 @@ use super::error::ReadError;
 use super::options::{ReadOptions, SHEET};
 use super::text::Text;
 use super::{
-    astm, black_lab, csv, fred, goniometer, merl, open_material, tracepro, workbook, zemax,
+    astm, black_lab, csv, fred, goniometer, merl, open_material, ssdd, tracepro, workbook, zemax,
 };
 use crate::scan::{Format, Measurements};
 
 /// All readers, in the order in which the content of a file is compared with their formats: those
 /// whose files carry a mark of the format, then tables, which are known by the form of their lines.
-pub(super) const READERS: [Reader; 10] = [
+pub(super) const READERS: [Reader; 11] = [
     merl::READER,
     workbook::READER,
     astm::READER,
@@ -22,6 +22,7 @@ pub(super) const READERS: [Reader; 10] = [
     fred::READER,
     open_material::READER,
     tracepro::READER,
+    ssdd::READER,
     csv::READER,
     goniometer::READER,
 ];

@@ -66,6 +66,11 @@ impl<'a> Text<'a> {
         }
     }
 
+    /// A text without lines, for the errors of a file that is text in part only.
+    pub(super) fn for_errors(path: &'a Path) -> Self {
+        Self { path, bytes: &[] }
+    }
+
     /// The number and the text of each line. A line ends with LF, CR or CR LF.
     pub(super) fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + use<'a> {
         lines(self.bytes)

@@ -33,11 +33,13 @@ pub enum Format {
     /// Table of BSDF of a TracePro surface property: [`read::tracepro`](crate::read::tracepro).
     #[serde(rename = "tracepro")]
     TracePro,
+    /// Surface scattering distribution data of libbsdf: [`read::ssdd`](crate::read::ssdd).
+    Ssdd,
 }
 
 impl Format {
     /// All formats, with their names in options and files.
-    pub const NAMED: [(Self, &str); 10] = [
+    pub const NAMED: [(Self, &str); 11] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
         (Self::Astm, "astm"),
@@ -48,6 +50,7 @@ impl Format {
         (Self::Fred, "fred"),
         (Self::OpenMaterial, "open-material"),
         (Self::TracePro, "tracepro"),
+        (Self::Ssdd, "ssdd"),
     ];
 
     /// The name in options and files.

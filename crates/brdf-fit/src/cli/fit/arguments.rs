@@ -129,7 +129,7 @@ pub(in crate::cli) struct Arguments {
 
     /// Format of the files: csv, merl, astm (E1392, E2387), zemax (tabular BSDF), black-lab,
     /// goniometer (incidence angles in columns, view angles in rows), fred (tabulated BSDF),
-    /// open-material (JSON), tracepro, or workbook (Excel, OpenDocument) [default: detected by content, then by extension]
+    /// open-material (JSON), tracepro, ssdd, or workbook (Excel, OpenDocument) [default: detected by content, then by extension]
     #[arg(long, value_name = "FORMAT")]
     pub(super) format: Option<Format>,
 

@@ -102,6 +102,16 @@ impl Bins {
     }
 }
 
+/// psi, theta and phi in radians from `theta_h`, `theta_d` and `phi_d` in radians; `None` where one of the
+/// two directions is not above the surface.
+pub(in crate::read) fn from_half_and_difference(
+    theta_h: f64,
+    theta_d: f64,
+    phi_d: f64,
+) -> Option<[f64; 3]> {
+    angles(theta_h.sin_cos(), theta_d.sin_cos(), phi_d.sin_cos())
+}
+
 /// psi, theta and phi in radians from the sines and cosines of `theta_h`, `theta_d` and `phi_d`; `None`
 /// where one of the two directions is not above the surface.
 ///

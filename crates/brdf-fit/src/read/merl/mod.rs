@@ -37,6 +37,7 @@ use super::options::ReadOptions;
 use super::reader::{Content, Reader};
 use crate::scan::{Format, Measurements};
 pub use bins::Bins;
+pub(super) use bins::from_half_and_difference;
 pub use channels::Channel;
 pub(super) use header::{begins_table, is_table};
 pub use table::Table;

@@ -73,7 +73,6 @@ use super::text::{Text, first_words};
 use crate::scan::{Convention, Format, Measurements, Metadata, RefractiveIndex};
 use readings::Readings;
 use sections::Header;
-#[cfg(feature = "export")]
 pub(crate) use specular::from_specular;
 use tokens::Tokens;
 

@@ -43,7 +43,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error as _, IgnoredAny, SeqAccess, Visitor};
 
-use super::conversion::{BEYOND_HORIZON, NOT_TAKEN, left_out};
+use super::conversion::LeftOut;
 use super::error::ReadError;
 use super::number::{is_reading, shifted};
 use super::options::ReadOptions;
@@ -178,12 +178,12 @@ pub(super) fn read(
     let Some(brdf) = document.brdf else {
         return Err(ReadError::file(path, without_brdf(bytes)));
     };
-    let (mut beyond, mut not_taken) = (0, 0);
+    let mut left = LeftOut::default();
     let mut readings = Vec::new();
     for row in &brdf.rows {
         match row.brdf {
-            None => not_taken += 1,
-            Some(_) if row.psi >= HORIZON || row.theta >= HORIZON => beyond += 1,
+            None => left.not_taken += 1,
+            Some(_) if row.psi >= HORIZON || row.theta >= HORIZON => left.beyond += 1,
             Some(brdf) => readings.push(row.reading(brdf, convention)),
         }
     }
@@ -195,8 +195,7 @@ pub(super) fn read(
         Side::Forward => "azimuth 0 is the forward side: azimuths are rotated by 180 deg",
     };
     let mut conversions = vec![azimuth.to_owned()];
-    conversions.extend(left_out(not_taken, NOT_TAKEN));
-    conversions.extend(left_out(beyond, BEYOND_HORIZON));
+    conversions.extend(left.notes());
     Ok(Measurements {
         source: path.display().to_string(),
         metadata: metadata(document.metadata),
@@ -262,6 +261,7 @@ fn json_error(path: &Path, error: &serde_json::Error) -> ReadError {
         path: path.to_owned(),
         line: error.line() as u64,
         message: quotable_message(message),
+        remedy: None,
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::error::ReadError;
+use super::error::{ReadError, Remedy};
 use super::options::{ReadOptions, SHEET};
 use super::text::Text;
 use super::{
@@ -83,9 +83,12 @@ impl Reader {
         self.check_options(path, options)?;
         match self.content {
             Content::Table(read) => read(Text::new(path, bytes)?, options),
-            // Files of these formats have nothing that could be declared.
             Content::Text(read) => {
-                read(Text::new(path, bytes)?, options).map_err(|error| error.with_remedy(None))
+                read(Text::new(path, bytes)?, options).map_err(|error| match error.remedy() {
+                    // Files of these formats have no comment that could be declared.
+                    Some(Remedy::Missing) => error.with_remedy(None),
+                    _ => error,
+                })
             }
             Content::Bytes(read) | Content::Tables(read) => read(path, bytes, options),
         }

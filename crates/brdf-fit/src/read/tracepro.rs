@@ -42,7 +42,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::conversion::{BEYOND_HORIZON, left_out};
-use super::error::ReadError;
+use super::error::{ReadError, Remedy};
 use super::number::{Field, is_reading, is_wavelength, parse_number};
 use super::options::ReadOptions;
 use super::reader::{Content, Reader};
@@ -292,6 +292,7 @@ fn side_of_azimuth(
             "the format does not state on which side ScatterAzimuth is 0, and the values depend on it: \
              expected the side of azimuth 0 in the options of the reading, source or forward",
         )
+        .with_remedy(Some(Remedy::PhiZero))
     })
 }
 

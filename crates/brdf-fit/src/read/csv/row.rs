@@ -310,8 +310,13 @@ impl Row<'_> {
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
         let name = &self.columns[column].name;
-        self.text
-            .number(self.line, name, &self.number_field(column), expected, accepts)
+        self.text.number(
+            self.line,
+            name,
+            &self.number_field(column),
+            expected,
+            accepts,
+        )
     }
 
     /// The reading in a column; `None` where it was not taken.

@@ -50,7 +50,7 @@ mod grid;
 use std::path::Path;
 
 use super::comments::number_of_key;
-use super::conversion::{BEYOND_HORIZON, NOT_TAKEN, left_out};
+use super::conversion::{LeftOut, left_out};
 use super::error::ReadError;
 use super::merl::Channel;
 use super::number::{is_wavelength, shifted};
@@ -143,8 +143,7 @@ fn channels(color: &Color, stated_um: Option<f64>) -> Vec<(usize, Option<f64>)> 
 #[derive(Default)]
 struct Readings {
     kept: Vec<Measurement>,
-    beyond: usize,
-    not_taken: usize,
+    left: LeftOut,
     repeated: usize,
 }
 
@@ -160,7 +159,7 @@ impl Readings {
                 continue;
             }
             let Some((psi, theta, phi)) = grid.directions(at) else {
-                self.beyond += channels.len();
+                self.left.beyond += channels.len();
                 continue;
             };
             for &(channel, wavelength_um) in channels {
@@ -176,7 +175,7 @@ impl Readings {
                     brdf,
                     sigma: None,
                 });
-                self.not_taken += usize::from(reading.is_none());
+                self.left.not_taken += usize::from(reading.is_none());
                 self.kept.extend(reading);
             }
         }
@@ -205,8 +204,7 @@ impl Readings {
             .iter()
             .map(|block| format!("the {} is not read", block.in_words()));
         conversions.extend(others);
-        conversions.extend(left_out(self.not_taken, NOT_TAKEN));
-        conversions.extend(left_out(self.beyond, BEYOND_HORIZON));
+        conversions.extend(self.left.notes());
         conversions.extend(left_out(
             self.repeated,
             "with the value of the same direction before",

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::sheet::{Budget, Sheet};
 use super::{Kind, archive, ods, xls, xlsx};
-use crate::read::error::ReadError;
+use crate::read::error::{ReadError, Remedy};
 use crate::read::options::{ReadOptions, SHEET};
 use crate::read::reader::Read;
 use crate::read::text::{Text, quotable};
@@ -30,7 +30,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], options: &ReadOptions) -> Read {
         Some((_, name)) => chosen(tables, name, &names),
         None => only(tables),
     };
-    let table = table.map_err(of_file)?;
+    let several = names.len() > 1;
+    let table =
+        table.map_err(|message| of_file(message).with_remedy(several.then_some(Remedy::Sheet)))?;
     let mut scan = table.read(path, options)?;
     scan.source = path.display().to_string();
     scan.format = Format::Workbook;

@@ -178,6 +178,55 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
 }
 
 #[test]
+fn files_for_other_programs_give_the_parameters_that_they_were_made_from() {
+    for (name, format, wavelength, said) in [
+        (
+            "speos.brdf",
+            Format::Speos,
+            Some(0.62),
+            "values are proportional to f_r: they are scaled to the stated reflectances, by 0.142857",
+        ),
+        (
+            "speos.anisotropicbsdf",
+            Format::Speos,
+            None,
+            "azimuth 0 is the forward side: azimuths are rotated by 180 deg",
+        ),
+        (
+            "lighttools.txt",
+            Format::LightTools,
+            Some(0.62),
+            "azimuths are counted from that of the source, 90 deg",
+        ),
+        (
+            "rt300s.jdv",
+            Format::Rt300s,
+            None,
+            "values are intensities in percent of a perfect diffuser: they are divided by 100 pi cos theta",
+        ),
+        (
+            "rgl.bsdf",
+            Format::Rgl,
+            Some(0.62),
+            "f_r at the nodes of the adaptive parameterisation: values are multiplied by D / (4 sigma \
+             cos theta)",
+        ),
+        (
+            "klems.xml",
+            Format::Klems,
+            Some(0.62),
+            "Reflection Front is read",
+        ),
+    ] {
+        let (printed, document) = fitted(&file(name), &["--n", "1.62"]);
+        assert_parameters(&document, &[(wavelength, SAND_YELLOW)]);
+        assert_eq!(document.reports[0].format, format);
+        let printed = brdf_tests::unwrapped(&printed);
+        assert!(printed.contains(&format!("read {said}")), "{printed}");
+    }
+}
+
+#[test]
 fn each_wavelength_of_a_file_is_fitted() {
     let (printed, document) = fitted(&file("black_lab.txt"), &["--n", "1.62"]);
     let expected = [
@@ -322,7 +371,7 @@ fn a_file_of_no_known_format_says_which_are_known() {
         &[],
         ": has no header: expected a line that names the columns, such as psi_deg, theta_deg and \
          brdf_per_sr, found \"angle value\"; known formats are csv, merl, astm, zemax, black-lab, \
-         goniometer, workbook, fred, open-material, tracepro, ssdd",
+         goniometer, workbook, fred, open-material, tracepro, ssdd, speos, lighttools, rt300s, rgl, klems",
     );
 }
 

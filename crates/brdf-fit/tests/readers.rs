@@ -129,6 +129,13 @@ fn word() -> impl Strategy<Value = Vec<u8>> {
         "X,Y,Z",
         "deg",
         "BTDF",
+        "AOI",
+        "ScatterRadial",
+        "OPTIS - brdf surface file v8.0\n0\n",
+        "DataType:\tBRDF(RT-300S)\n",
+        "Raw data\n",
+        "tensor_file\0",
+        "<WindowElement>",
     ];
     prop_oneof![
         proptest::sample::select(known.to_vec()).prop_map(|word| word.as_bytes().to_vec()),

@@ -150,6 +150,9 @@ pub(super) fn left_out(count: usize, which: &str) -> Option<String> {
 /// Which readings are left out because a direction is not above the surface.
 pub(super) const BEYOND_HORIZON: &str = "at or beyond 90 deg from the normal";
 
+/// Which readings are left out because there is no value.
+pub(super) const NOT_TAKEN: &str = "not taken (no value)";
+
 /// How many readings are left out, by the reason.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LeftOut {
@@ -160,7 +163,7 @@ pub(super) struct LeftOut {
 impl LeftOut {
     /// The sentences that report the numbers.
     pub(super) fn notes(self) -> impl Iterator<Item = String> {
-        let not_taken = left_out(self.not_taken, "not taken (no value)");
+        let not_taken = left_out(self.not_taken, NOT_TAKEN);
         let beyond = left_out(self.beyond, BEYOND_HORIZON);
         not_taken.into_iter().chain(beyond)
     }

@@ -130,3 +130,19 @@ fn from_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measur
         _ => all,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_binary_stream_without_line_ends_is_read_to_its_end() {
+        let bins: [i32; 3] = [50, 50, 30];
+        let mut bytes: Vec<u8> = bins.into_iter().flat_map(i32::to_le_bytes).collect();
+        // More than a chunk of bytes of which none is a line end.
+        bytes.resize(bytes.len() + 3 * 8 * 50 * 50 * 30, 0);
+        let options = ReadOptions::default();
+        let scan = Measurements::from_stream("a", bytes.as_slice(), &options).unwrap();
+        assert_eq!(scan.format, Format::Merl);
+    }
+}

@@ -3,9 +3,8 @@
 use super::text::lines;
 
 /// How a file begins, what it is, and what to do.
-const BINARY: [(&[u8], &str); 12] = [
+const BINARY: [(&[u8], &str); 11] = [
     (b"PK\x03\x04", "a zip archive"),
-    (b"tensor_file", "an RGL tensor file of a measured BSDF"),
     (b"\x89HDF", "an HDF5 file"),
     (b"CDF\x01", "a NetCDF file"),
     (b"MATLAB 5.0", "a MATLAB file"),
@@ -18,15 +17,19 @@ const BINARY: [(&[u8], &str); 12] = [
     (b"\x7fELF", "a program"),
 ];
 
-/// Texts of other programs: how a line begins, and what the file is.
-const TEXT: [(&str, &str); 10] = [
-    ("<WindowElement", "an LBNL WINDOW XML file (Klems basis)"),
+/// Texts of other programs: how the first line begins, and what the file is.
+const TEXT: [(&str, &str); 8] = [
     ("<?xml", "an XML file"),
     ("<!DOCTYPE", "a web page"),
     ("<html", "a web page"),
-    ("OPTIS - ", "an Ansys Speos surface file"),
-    ("DataType:\tBRDF(RT", "an export of an RT-300S (.jdv)"),
-    ("AOI ", "a LightTools table of a BSDF"),
+    (
+        "OPTIS - ",
+        "an Ansys Speos file that is binary or no table of a BRDF",
+    ),
+    (
+        "Name / Comment :",
+        "a text of a Reflet goniophotometer (its .jdv can be read)",
+    ),
     ("TracePro", "a TracePro property that is no table of a BSDF"),
     ("{", "a JSON document"),
     ("[{", "a JSON document"),
@@ -43,20 +46,11 @@ pub(super) fn foreign(head: &[u8]) -> Option<String> {
     what.map(|what| format!("is {what}, which cannot be read: {expected}"))
 }
 
-/// What a text of another program is. Of several marks the most telling one is taken: an XML file of a
-/// window is one of the window.
+/// What a text of another program is.
 fn text(head: &[u8]) -> Option<&'static str> {
-    let starts = |mark: &str| {
-        let mut lines = lines(head)
-            .take(64)
-            .map(|(_, line)| line.trim_ascii_start());
-        let starts = |line: &[u8]| line.starts_with(mark.as_bytes());
-        match mark {
-            // These may stand anywhere above the data, the others in the first line alone.
-            "AOI " | "<WindowElement" => lines.any(starts),
-            _ => lines.find(|line| !line.is_empty()).is_some_and(starts),
-        }
-    };
+    let mut lines = lines(head).map(|(_, line)| line.trim_ascii_start());
+    let first = lines.find(|line| !line.is_empty())?;
+    let starts = |mark: &str| first.starts_with(mark.as_bytes());
     TEXT.iter()
         .find(|(mark, _)| starts(mark))
         .map(|(_, what)| *what)
@@ -70,14 +64,9 @@ mod tests {
     fn files_of_other_programs_are_called_by_their_names() {
         for (head, name) in [
             (&b"PK\x03\x04....[Content_Types].xml"[..], "zip archive"),
-            (b"tensor_file\0\x01", "RGL"),
             (b"%PDF-1.7", "PDF"),
-            (b"<?xml version=\"1.0\"?>\n<WindowElement>", "WINDOW XML"),
-            (b"OPTIS - brdf surface file v8.0\n", "Speos"),
-            (
-                b"# note\nSymmetry Asymmetric\nAOI 10\nPOI 0\n",
-                "LightTools",
-            ),
+            (b"<?xml version=\"1.0\"?>\n<lamp>", "XML"),
+            (b"OPTIS - Scattering surface file v8.0\n", "Speos"),
             (b"{\n \"header\": {}}", "JSON"),
         ] {
             let message = foreign(head).unwrap();

@@ -7,17 +7,23 @@ use super::error::{ReadError, Remedy};
 use super::options::{ReadOptions, SHEET};
 use super::text::Text;
 use super::{
-    astm, black_lab, csv, fred, goniometer, merl, open_material, ssdd, tracepro, workbook, zemax,
+    astm, black_lab, csv, fred, goniometer, klems, lighttools, merl, open_material, rgl, rt300s,
+    speos, ssdd, tracepro, workbook, zemax,
 };
 use crate::scan::{Format, Measurements};
 
 /// All readers, in the order in which the content of a file is compared with their formats: those
 /// whose files carry a mark of the format, then tables, which are known by the form of their lines.
-pub(super) const READERS: [Reader; 11] = [
+pub(super) const READERS: [Reader; 16] = [
     merl::READER,
     workbook::READER,
+    rgl::READER,
     astm::READER,
     black_lab::READER,
+    speos::READER,
+    lighttools::READER,
+    rt300s::READER,
+    klems::READER,
     zemax::READER,
     fred::READER,
     open_material::READER,

@@ -35,11 +35,22 @@ pub enum Format {
     TracePro,
     /// Surface scattering distribution data of libbsdf: [`read::ssdd`](crate::read::ssdd).
     Ssdd,
+    /// Ansys Speos tables of a surface: [`read::speos`](crate::read::speos).
+    Speos,
+    /// LightTools tables of a BSDF: [`read::lighttools`](crate::read::lighttools).
+    #[serde(rename = "lighttools")]
+    LightTools,
+    /// Exports of the goniophotometer RT-300S: [`read::rt300s`](crate::read::rt300s).
+    Rt300s,
+    /// RGL tensor files of measured BRDFs: [`read::rgl`](crate::read::rgl).
+    Rgl,
+    /// LBNL WINDOW XML files with a Klems basis: [`read::klems`](crate::read::klems).
+    Klems,
 }
 
 impl Format {
     /// All formats, with their names in options and files.
-    pub const NAMED: [(Self, &str); 11] = [
+    pub const NAMED: [(Self, &str); 16] = [
         (Self::Csv, "csv"),
         (Self::Merl, "merl"),
         (Self::Astm, "astm"),
@@ -51,6 +62,11 @@ impl Format {
         (Self::OpenMaterial, "open-material"),
         (Self::TracePro, "tracepro"),
         (Self::Ssdd, "ssdd"),
+        (Self::Speos, "speos"),
+        (Self::LightTools, "lighttools"),
+        (Self::Rt300s, "rt300s"),
+        (Self::Rgl, "rgl"),
+        (Self::Klems, "klems"),
     ];
 
     /// The name in options and files.

@@ -128,8 +128,9 @@ pub(in crate::cli) struct Arguments {
     pub(super) g2: Option<AngleWeight>,
 
     /// Format of the files: csv, merl, astm (E1392, E2387), zemax (tabular BSDF), black-lab,
-    /// goniometer (incidence angles in columns, view angles in rows), fred (tabulated BSDF),
-    /// open-material (JSON), tracepro, ssdd, or workbook (Excel, OpenDocument) [default: detected by content, then by extension]
+    /// goniometer (incidence angles in columns, view angles in rows), fred (tabulated BSDF), speos,
+    /// lighttools, tracepro, open-material (JSON), rt300s, rgl (tensor files), klems (WINDOW XML), ssdd,
+    /// or workbook (Excel, OpenDocument) [default: detected by content, then by extension]
     #[arg(long, value_name = "FORMAT")]
     pub(super) format: Option<Format>,
 

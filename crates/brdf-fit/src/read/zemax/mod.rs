@@ -62,7 +62,7 @@
 mod readings;
 mod sections;
 mod specular;
-mod tokens;
+pub(super) mod tokens;
 
 use super::comments::number_of_key;
 use super::error::ReadError;
@@ -83,7 +83,8 @@ pub(super) const READER: Reader = Reader {
     content: Content::Text(read),
 };
 
-/// Whether two lines of a text begin with keywords of the format.
+/// Whether two lines of a text begin with keywords of the format. LightTools shares some of them, but
+/// calls the angle of incidence `AOI`.
 fn has_keywords(bytes: &[u8]) -> bool {
     const KEYWORDS: [&[u8]; 4] = [
         b"Symmetry",
@@ -92,7 +93,7 @@ fn has_keywords(bytes: &[u8]) -> bool {
         b"SampleRotation",
     ];
     let found = first_words(bytes).filter(|word| KEYWORDS.contains(word));
-    found.take(2).count() == 2
+    found.take(2).count() == 2 && first_words(bytes).all(|word| word != b"AOI")
 }
 
 /// # Errors

@@ -7,10 +7,10 @@ use crate::read::text::{Text, quotable, words};
 use crate::scan::Metadata;
 
 /// The words of a file with the numbers of their lines. Comments are read as metadata.
-pub(super) struct Tokens<'a> {
-    pub(super) text: Text<'a>,
+pub(in crate::read) struct Tokens<'a> {
+    pub(in crate::read) text: Text<'a>,
     words: std::iter::Peekable<std::vec::IntoIter<(u64, &'a [u8])>>,
-    pub(super) metadata: Metadata,
+    pub(in crate::read) metadata: Metadata,
     /// The line of the last word that was taken.
     line: u64,
 }
@@ -19,7 +19,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// A line is too long.
-    pub(super) fn new(text: Text<'a>) -> Result<Self, ReadError> {
+    pub(in crate::read) fn new(text: Text<'a>) -> Result<Self, ReadError> {
         let mut found = Vec::new();
         let mut metadata = Metadata::default();
         for line in text.checked_lines() {
@@ -41,7 +41,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// The next word, which is not taken.
-    pub(super) fn peek(&mut self) -> Option<&'a [u8]> {
+    pub(in crate::read) fn peek(&mut self) -> Option<&'a [u8]> {
         self.words.peek().map(|(_, word)| *word)
     }
 
@@ -50,7 +50,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// There is none.
-    pub(super) fn next(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
+    pub(in crate::read) fn next(&mut self, expected: &str) -> Result<&'a [u8], ReadError> {
         match self.words.next() {
             Some((line, word)) => {
                 self.line = line;
@@ -67,7 +67,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// It is another.
-    pub(super) fn keyword(&mut self, expected: &'static str) -> Result<(), ReadError> {
+    pub(in crate::read) fn keyword(&mut self, expected: &'static str) -> Result<(), ReadError> {
         self.choose(&[expected]).map(drop)
     }
 
@@ -76,7 +76,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// It is another.
-    pub(super) fn choose(&mut self, words: &[&str]) -> Result<usize, ReadError> {
+    pub(in crate::read) fn choose(&mut self, words: &[&str]) -> Result<usize, ReadError> {
         let expected = words.join(" or ");
         let word = self.next(&expected)?;
         let found = words
@@ -90,7 +90,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// It is not.
-    pub(super) fn number(
+    pub(in crate::read) fn number(
         &mut self,
         name: &str,
         expected: &str,
@@ -118,7 +118,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// The count is not a positive integer, or an angle is not a number for which `accepts` is true.
-    pub(super) fn angles(
+    pub(in crate::read) fn angles(
         &mut self,
         name: &'static str,
         accepts: fn(f64) -> bool,
@@ -141,7 +141,7 @@ impl<'a> Tokens<'a> {
     /// # Errors
     ///
     /// There is another word.
-    pub(super) fn end(&mut self, expected: &str) -> Result<(), ReadError> {
+    pub(in crate::read) fn end(&mut self, expected: &str) -> Result<(), ReadError> {
         match self.words.next() {
             None => Ok(()),
             Some((line, word)) => {
@@ -152,12 +152,12 @@ impl<'a> Tokens<'a> {
     }
 
     /// An error at the line of the last word.
-    pub(super) fn error(&self, message: impl Into<String>) -> ReadError {
+    pub(in crate::read) fn error(&self, message: impl Into<String>) -> ReadError {
         self.text.line_error(self.line, message)
     }
 
     /// The error that the last word is not the expected one.
-    pub(super) fn unexpected(&self, word: &[u8], expected: &str) -> ReadError {
+    pub(in crate::read) fn unexpected(&self, word: &[u8], expected: &str) -> ReadError {
         self.error(format!("\"{}\": expected {expected}", quotable(word)))
     }
 }

@@ -140,7 +140,12 @@ const CASES: &[(&str, &[&str], Expected)] = &[
     ("25-repeats/repeats.csv", &[], Warning("repeated-readings")),
     ("27-rows-at-90/gonio90.csv", &[], AS_PAINT),
     ("27-rows-at-90/grid90.csv", &[], AS_PAINT),
-    ("28-klems-xml/paint.xml", &[], Message("Klems")),
+    // All patches have one value.
+    (
+        "28-klems-xml/paint.xml",
+        &[],
+        Message("all 1681 readings are 0.0955"),
+    ),
     (
         "29-rgl-tensor-bsdf/paint_rgb.bsdf",
         &[],
@@ -187,6 +192,12 @@ const CASES: &[(&str, &[&str], Expected)] = &[
         "41-rt300s-exports/test_jdv.jdv",
         &[],
         Warning("all-negative?"),
+    ),
+    // Its plane of incidence is not that of the instrument's exports.
+    (
+        "41-rt300s-exports/paint_like_export.jdv",
+        &[],
+        Message("mirrored at the azimuths 0"),
     ),
     (
         "41-rt300s-exports/test_raywiz.jdv",

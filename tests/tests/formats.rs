@@ -90,7 +90,7 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             &[],
             [
                 "BRDF cos theta is divided by cos theta",
-                "4 readings not taken (empty cells) are left out",
+                "4 readings not taken (no value) are left out",
                 "",
             ],
         ),
@@ -152,7 +152,7 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             [
                 "the sheet \"Goniometer\" is read, \"Blank\" is not",
                 "BRDF cos theta is divided by cos theta",
-                "4 readings not taken (empty cells) are left out",
+                "4 readings not taken (no value) are left out",
             ],
         ),
         (
@@ -352,7 +352,7 @@ fn wrong_files_are_refused_with_line_and_value() {
         "a.txt",
         &with("black_lab.txt", "0.47320122", "dark"),
         &[],
-        ", line 5, column 620.00nm: \"dark\" is not a number: expected a reading",
+        ", line 5, column 620.00nm: \"dark\" is not a number: expected a reading, or nan where none was taken",
     );
     assert_refused(
         "a.txt",

@@ -42,6 +42,7 @@
 //! `rt300s_frame_to_fred.m` has the same azimuths. The exports of one measurement below
 //! `docs/instruments/rt300s` there show that the values of a `.jdv` are 100 RT.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use super::angles::{AngleUnit, TwoDirections};
@@ -70,6 +71,9 @@ const SOURCE_AZIMUTH: f64 = 90.0;
 /// What the values are when they are divided by pi f_r cos theta.
 const PERCENT: f64 = 100.0;
 
+/// Readings are mirrored at a plane where their differences are smaller by this factor than at another.
+const TURNED: f64 = 5.0;
+
 /// # Errors
 ///
 /// The text is not such a file, or has no readings above the surface, or `options` set another angular
@@ -92,6 +96,12 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
         };
         return Err(text.error(message));
     }
+    if is_turned(&file.readings) {
+        return Err(text.error(
+            "is not in the convention of the instrument's exports: its values are mirrored at the azimuths 0 \
+             and 180 deg, expected the plane of incidence at -90 and 90 deg (export the readings as a table)",
+        ));
+    }
     Ok(Measurements {
         source: text.path.display().to_string(),
         conversions: file.conversions(),
@@ -101,6 +111,30 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
         readings: file.readings,
         ..Measurements::default()
     })
+}
+
+/// Whether the readings are mirrored at the plane across that of incidence, and not at the plane of
+/// incidence, as those of every isotropic surface are.
+fn is_turned(readings: &[Measurement]) -> bool {
+    // The components of the view in both planes, to 1e-6.
+    let place = |reading: &Measurement, along: f64, across: f64| {
+        let (sin_phi, cos_phi) = reading.phi.sin_cos();
+        let component = |x: f64| (1e6 * reading.theta.sin() * x).round() as i64;
+        let psi = (1e6 * reading.psi).round() as i64;
+        (psi, component(along * cos_phi), component(across * sin_phi))
+    };
+    let at: HashMap<_, f64> = readings
+        .iter()
+        .map(|reading| (place(reading, 1.0, 1.0), reading.brdf))
+        .collect();
+    let difference = |along: f64, across: f64| -> f64 {
+        let differences = readings.iter().filter_map(|reading| {
+            let mirrored = at.get(&place(reading, along, across))?;
+            Some((mirrored - reading.brdf).abs())
+        });
+        differences.sum()
+    };
+    TURNED * difference(-1.0, 1.0) < difference(1.0, -1.0)
 }
 
 /// What the next line is.
@@ -317,6 +351,26 @@ fn check_type(text: &Text<'_>, number: u64, line: &[u8]) -> Result<(), ReadError
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn values_that_are_mirrored_at_the_wrong_plane_are_refused() {
+        let block = |first: f64| {
+            format!(
+                "DataType:\tBRDF(RT-300S)\nIncidence:\t30\n\nRaw data\n\t-30\t0\t30\n\
+                 -90\t10\t12\t{first}\n0\t11\t12\t11\n90\t{first}\t12\t10\n"
+            )
+        };
+        let read_as = |content: &str| {
+            let text = Text::new(Path::new("a.jdv"), content.as_bytes()).unwrap();
+            read(text, &ReadOptions::default())
+        };
+        assert!(read_as(&block(20.0)).is_ok());
+        // The forward side at azimuth 0, and both sides across it equal.
+        let turned = "DataType:\tBRDF(RT-300S)\nIncidence:\t30\n\nRaw data\n\t-30\t0\t30\n\
+                      -90\t10\t12\t10\n0\t11\t12\t20\n90\t10\t12\t10\n";
+        let error = read_as(turned).unwrap_err().to_string();
+        assert!(error.contains("mirrored at the azimuths 0"), "{error}");
+    }
+
     use std::path::Path;
 
     use proptest::prelude::*;

@@ -28,9 +28,9 @@
 //! direction in which the light travels, the options of the reading put azimuth 0 on the forward side.)
 //!
 //! Readings without a value, and those at the horizon, are left out and counted. The schema writes pi/2 as
-//! 1.570796, so that angles within 1e-6 of it are at the horizon. Other tables of OpenMATERIAL are errors:
-//! reflection coefficients are ratios of amplitudes, and optical and electromagnetic properties are no
-//! readings. So are tables of drafts of the format, which had other columns.
+//! 1.570796, so that angles within 1e-6 of it are at the horizon. Other tables of OpenMATERIAL (reflection
+//! coefficients, optical and electromagnetic properties) are errors, as are tables of drafts of the format,
+//! which had other columns.
 //!
 //! Source: `schemas/material_brdf_schema.json`, the examples and issue 436 of
 //! github.com/asam-ev/OpenMATERIAL-3D (version 1.1.0).
@@ -48,7 +48,7 @@ use super::error::ReadError;
 use super::number::{is_reading, shifted};
 use super::options::ReadOptions;
 use super::reader::{Content, Reader};
-use super::text::{HEAD, without_byte_order_mark};
+use super::text::{HEAD, quotable, without_byte_order_mark};
 use crate::scan::{Convention, Format, Measurement, Measurements, Metadata, Side};
 
 pub(super) const READER: Reader = Reader {
@@ -238,19 +238,28 @@ fn metadata(object: serde_json::Map<String, serde_json::Value>) -> Metadata {
     Metadata(texts.collect())
 }
 
-/// What a document of the standard is that has no BRDF.
+/// What a document of the standard has in place of a BRDF.
 fn without_brdf(bytes: &[u8]) -> String {
-    let names: BTreeMap<String, IgnoredAny> =
+    #[expect(
+        clippy::zero_sized_map_values,
+        reason = "the values are read to skip them"
+    )]
+    let object: BTreeMap<String, IgnoredAny> =
         serde_json::from_slice(without_byte_order_mark(bytes)).unwrap_or_default();
-    let what = match () {
-        () if names.contains_key("reflectionCoefficient") => {
-            "is a table of reflection coefficients, ratios of amplitudes"
-        }
-        () if names.contains_key("optical") => "is a table of optical properties",
-        () if names.contains_key("emp") => "is a table of electromagnetic properties",
-        () => "has no BRDF",
+    let names = object.into_keys();
+    let names = names.filter(|name| name != "metadata" && name != "$schema");
+    let names: Vec<String> = names
+        .take(4)
+        .map(|name| format!("\"{}\"", quotable(name.as_bytes())))
+        .collect();
+    let found = if names.is_empty() {
+        String::new()
+    } else {
+        format!(", but {}", names.join(", "))
     };
-    format!("{what}: expected a look-up table of OpenMATERIAL with \"brdf\" and \"lookupTable\"")
+    format!(
+        "has no BRDF{found}: expected a look-up table of OpenMATERIAL with \"brdf\" and \"lookupTable\""
+    )
 }
 
 /// The error of a document, with its line and without what the program calls the place.
@@ -366,9 +375,15 @@ mod tests {
             assert!((READER.recognises)(text.as_bytes()));
             error(&text)
         };
-        assert!(other("reflectionCoefficient").contains("is a table of reflection coefficients"));
-        assert!(other("optical").contains("is a table of optical properties"));
-        assert!(other("x").contains("has no BRDF: expected a look-up table"));
+        assert!(
+            other("reflectionCoefficient").contains("has no BRDF, but \"reflectionCoefficient\"")
+        );
+        assert!(
+            other("opticalProperties")
+                .contains("but \"opticalProperties\": expected a look-up table")
+        );
+        let nothing = error("{\"metadata\": {\"openMaterial3dVersion\": \"1.1.0\"}}");
+        assert!(nothing.contains("has no BRDF: expected"), "{nothing}");
     }
 
     #[test]

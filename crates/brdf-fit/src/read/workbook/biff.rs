@@ -141,10 +141,10 @@ pub(super) struct Characters<'a> {
 }
 
 impl<'a> Characters<'a> {
-    pub(super) fn of(parts: &[&'a [u8]]) -> Self {
+    pub(super) fn of(parts: Vec<&'a [u8]>) -> Self {
         Self {
             part: &[],
-            others: parts.to_vec().into_iter(),
+            others: parts.into_iter(),
         }
     }
 
@@ -220,8 +220,8 @@ mod tests {
 
     #[test]
     fn a_string_goes_on_in_the_next_part_with_other_widths() {
-        let parts: [&[u8]; 3] = [b"\x04\0\0ab", b"\x01c\0\xac\x20", b"\x02\0\0xy"];
-        let mut characters = Characters::of(&parts);
+        let parts: Vec<&[u8]> = vec![b"\x04\0\0ab", b"\x01c\0\xac\x20", b"\x02\0\0xy"];
+        let mut characters = Characters::of(parts);
         let length = characters.u16().unwrap();
         assert_eq!(characters.rich_text(length.into()).unwrap(), "abc\u{20ac}");
         let length = characters.u16().unwrap();
@@ -231,12 +231,12 @@ mod tests {
 
     #[test]
     fn formats_and_phonetic_signs_of_a_string_are_skipped() {
-        let parts: [&[u8]; 2] = [b"\x0c\x01\0\x03\0\0\0ab1234", b"567\x01\0\0z"];
-        let mut characters = Characters::of(&parts);
+        let parts: Vec<&[u8]> = vec![b"\x0c\x01\0\x03\0\0\0ab1234", b"567\x01\0\0z"];
+        let mut characters = Characters::of(parts.clone());
         assert_eq!(characters.rich_text(2).unwrap(), "ab");
         assert_eq!(characters.u16().unwrap(), 1);
         assert_eq!(characters.text(1).unwrap(), "z");
-        assert!(Characters::of(&parts).skip(100).is_err());
+        assert!(Characters::of(parts).skip(100).is_err());
     }
 
     #[test]

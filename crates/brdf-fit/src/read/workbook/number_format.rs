@@ -38,8 +38,9 @@ impl Shown {
             match c {
                 ';' => break,
                 '"' => drop(chars.by_ref().find(|c| *c == '"')),
-                // The next character is shown as it is, gives the width of a space, or fills the cell.
-                '\\' | '_' | '*' => drop(chars.next()),
+                // The next character is shown as it is, gives the width of a space, fills the cell, or is the sign
+                // of an exponent.
+                '\\' | '_' | '*' | 'E' | 'e' => drop(chars.next()),
                 '[' => {
                     let within: String = chars.by_ref().take_while(|c| *c != ']').collect();
                     let unit = within.trim_matches(|c: char| "hHmMsS".contains(c));
@@ -48,8 +49,6 @@ impl Shown {
                     }
                 }
                 '%' if shown == Self::Number => shown = Self::Percentage,
-                // The exponent of a number.
-                'E' | 'e' => drop(chars.next()),
                 c if "yYmMdDhHsS".contains(c) => shown = Self::Moment,
                 _ => {}
             }

@@ -48,7 +48,7 @@ struct Xlsx<'a>(&'a str, &'a str, String, &'a str);
 fn row(number: usize, cells: &[&str]) -> String {
     let cells = cells.iter().zip('A'..);
     let cells = cells.map(|(cell, column)| match cell.parse::<f64>() {
-        _ if cell.starts_with('<') => cell.replace("@", &format!("{column}{number}")),
+        _ if cell.starts_with('<') => cell.replace('@', &format!("{column}{number}")),
         Ok(_) => format!("<c r=\"{column}{number}\"><v>{cell}</v></c>"),
         Err(_) => {
             format!("<c r=\"{column}{number}\" t=\"inlineStr\"><is><t>{cell}</t></is></c>")
@@ -60,20 +60,26 @@ fn row(number: usize, cells: &[&str]) -> String {
 fn xlsx(sheets: &[Xlsx<'_>]) -> Vec<u8> {
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     const OFFICE: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
-    let mut list = String::new();
-    let mut relations = String::new();
-    let mut files = Vec::new();
-    for (i, Xlsx(name, state, rows, after)) in sheets.iter().enumerate() {
-        list +=
-            &format!("<sheet name=\"{name}\" sheetId=\"{i}\" state=\"{state}\" r:id=\"r{i}\"/>");
-        relations += &format!(
-            "<Relationship Id=\"r{i}\" Type=\"{OFFICE}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>"
-        );
-        files.push((
+    let sheets = || sheets.iter().enumerate();
+    let list: String = sheets()
+        .map(|(i, Xlsx(name, state, ..))| {
+            format!("<sheet name=\"{name}\" sheetId=\"{i}\" state=\"{state}\" r:id=\"r{i}\"/>")
+        })
+        .collect();
+    let relations: String = sheets()
+        .map(|(i, _)| {
+            format!(
+                "<Relationship Id=\"r{i}\" Type=\"{OFFICE}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>"
+            )
+        })
+        .collect();
+    let sheet = |(i, Xlsx(_, _, rows, after)): (usize, &Xlsx<'_>)| {
+        (
             format!("xl/worksheets/sheet{i}.xml"),
             format!("<worksheet xmlns=\"{MAIN}\"><sheetData>{rows}</sheetData>{after}</worksheet>"),
-        ));
-    }
+        )
+    };
+    let mut files: Vec<_> = sheets().map(sheet).collect();
     let relations = format!("<Relationships xmlns=\"r\">{relations}</Relationships>");
     let workbook = format!(
         "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OFFICE}\"><sheets>{list}</sheets></workbook>"

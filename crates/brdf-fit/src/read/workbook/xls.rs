@@ -93,7 +93,7 @@ impl Globals {
                     let mut fields = record.fields();
                     let number = fields.u16()?;
                     let length = fields.u16()?;
-                    let code = Characters::of(&[fields.rest()]).text(usize::from(length))?;
+                    let code = Characters::of(vec![fields.rest()]).text(usize::from(length))?;
                     globals.formats.push((number, Shown::of_code(&code)));
                 }
                 Record::XF => {
@@ -101,7 +101,7 @@ impl Globals {
                     fields.skip(2)?;
                     formats_of_cells.push(fields.u16()?);
                 }
-                Record::SST => globals.strings = strings(&records.continued(&record)?)?,
+                Record::SST => globals.strings = strings(records.continued(&record)?)?,
                 Record::EOF => break,
                 _ => {}
             }
@@ -153,7 +153,7 @@ fn listed(record: &Record<'_>) -> Result<Option<Listed>, String> {
     let visibility = fields.u8()? & 3;
     let kind = fields.u8()?;
     let length = fields.u8()?;
-    let name = Characters::of(&[fields.rest()]).text(usize::from(length))?;
+    let name = Characters::of(vec![fields.rest()]).text(usize::from(length))?;
     let start = usize::try_from(start).map_err(|_| "is damaged: a sheet is missing")?;
     Ok((kind == 0).then_some(Listed {
         name,
@@ -163,7 +163,7 @@ fn listed(record: &Record<'_>) -> Result<Option<Listed>, String> {
 }
 
 /// The table of all strings, SST (2.4.265). The strings are XLUnicodeRichExtendedString (2.5.293).
-fn strings(parts: &[&[u8]]) -> Result<Vec<String>, String> {
+fn strings(parts: Vec<&[u8]>) -> Result<Vec<String>, String> {
     let mut characters = Characters::of(parts);
     characters.skip(4)?;
     let count = characters.u32()?;
@@ -193,7 +193,7 @@ fn read_sheet(
             _ if depth > 1 => {}
             Record::STRING => {
                 let parts = records.continued(&record)?;
-                let mut characters = Characters::of(&parts);
+                let mut characters = Characters::of(parts);
                 let length = characters.u16()?;
                 let value = Value::of_text(&characters.text(usize::from(length))?);
                 if let (Some((row, column)), Some(value)) = (formula.take(), value) {
@@ -270,7 +270,7 @@ impl Cells<'_> {
             },
             _ => {
                 let length = fields.u16()?;
-                let text = Characters::of(&[fields.rest()]).text(usize::from(length))?;
+                let text = Characters::of(vec![fields.rest()]).text(usize::from(length))?;
                 Value::of_text(&text)
             }
         };

@@ -121,7 +121,7 @@ fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
             &["--n", "1.62", "--phi-zero", "source"],
             [
                 "azimuth 0 is the source's side, as stated",
-                "49 readings at or beyond 90 deg from the normal are left out",
+                "42 readings at or beyond 90 deg from the normal are left out",
                 "16 readings of the specular direction at another azimuth are left out",
             ],
         ),

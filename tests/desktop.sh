@@ -58,8 +58,10 @@ different=$(compare -metric AE "$work/before.png" "$work/dragged.png" null: 2>&1
 
 key F5 3                                    # fit in both stages
 picture fitted
-key ctrl+r                                  # choose readings: the brightest of 70 deg
-xdotool mousemove 399 69 click 1
+key ctrl+r                                  # choose readings: a rectangle around the brightest
+xdotool mousemove 365 64 mousedown 1
+for _ in 1 2 3 4 5 6; do xdotool mousemove_relative -- 10 10; sleep 0.05; done
+xdotool mouseup 1
 sleep 1
 key ctrl+r
 key F5 3

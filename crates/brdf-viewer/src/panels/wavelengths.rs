@@ -27,6 +27,7 @@ pub(super) fn show(ui: &mut Ui, sample: &Sample, intents: &mut Vec<Intent>) {
         .max_height(MOST_HEIGHT)
         .show_rows(ui, height, sample.scans.len() + 1, |ui, rows| {
             Grid::new("wavelengths")
+                .min_col_width(16.0)
                 .num_columns(5)
                 .spacing([8.0, 2.0])
                 .show(ui, |ui| {

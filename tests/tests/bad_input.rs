@@ -316,30 +316,18 @@ fn one_bad_file_does_not_keep_the_others() {
 }
 
 #[test]
-fn output_that_cannot_be_written() {
+fn a_device_that_is_full_does_not_keep_the_tables() {
     let scan = in_workspace("data/measured/z307_on_aluminium.csv");
     let scan = scan.to_str().unwrap();
     for option in ["--json", "--curves"] {
-        for (target, message) in [
-            (
-                "/no/such/folder/out",
-                "/no/such/folder/out: cannot be written: No such file",
-            ),
-            ("/proc/out", "/proc/out: cannot be written"),
-            (
-                "/dev/full",
-                "/dev/full: cannot be written: No space left on device",
-            ),
-            ("/tmp", "/tmp: cannot be written: Is a directory"),
-        ] {
-            let output = run_fit([scan, "--n", "1.5", option, target]);
-            assert_eq!(output.status.code(), Some(BAD), "{target}");
-            assert!(stderr(&output).contains(message), "{}", stderr(&output));
-            assert!(
-                !output.stdout.is_empty(),
-                "the tables are delivered all the same"
-            );
-        }
+        let output = run_fit([scan, "--n", "1.5", option, "/dev/full"]);
+        assert_eq!(output.status.code(), Some(BAD));
+        let message = "/dev/full: cannot be written: No space left on device";
+        assert!(stderr(&output).contains(message), "{}", stderr(&output));
+        assert!(
+            !output.stdout.is_empty(),
+            "the tables are delivered all the same"
+        );
     }
     let full = fs::OpenOptions::new()
         .write(true)
@@ -363,28 +351,6 @@ fn output_that_cannot_be_written() {
         Path::new("/dev/full").exists(),
         "a device is written to, not replaced"
     );
-}
-
-#[test]
-fn an_output_never_takes_the_place_of_a_scan_or_of_another_output() {
-    let (folder, path) = file(rows("30,-20,0.4"));
-    let before = fs::read(&path).unwrap();
-    let scan = path.to_str().unwrap();
-    let other = folder.path().join("out");
-    let other = other.to_str().unwrap();
-    for outputs in [
-        vec!["--json", scan],
-        vec!["--json", other, "--curves", other],
-    ] {
-        let output = run_fit([vec![scan, "--n", "1.5"], outputs].concat());
-        assert_eq!(output.status.code(), Some(BAD));
-        assert!(
-            stderr(&output).contains("expected a file of its own"),
-            "{}",
-            stderr(&output)
-        );
-    }
-    assert_eq!(fs::read(&path).unwrap(), before);
 }
 
 #[test]

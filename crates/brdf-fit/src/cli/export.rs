@@ -115,6 +115,7 @@ impl Arguments {
         stream::check(
             [("FILE", self.fits.as_path())],
             outputs.map(|path| ("--output", path)),
+            None,
         )?;
         self.check_effects()?;
         Ok(beside)

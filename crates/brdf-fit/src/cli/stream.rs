@@ -6,7 +6,9 @@ use std::path::Path;
 use serde::Serialize;
 
 pub(super) use crate::output::is_standard_stream as is_stream;
-use crate::output::{TakenError, WriteError, check_outputs, write_file};
+use crate::output::{
+    self, FilesInUse, TakenError, WriteError, check_outputs, check_writable, resolved, write_file,
+};
 use crate::read::{LazyScan, ReadError, ReadOptions};
 use crate::report::DocumentError;
 use crate::scan::Measurements;
@@ -41,6 +43,8 @@ pub(super) enum StreamError {
     Folder(&'static str),
     #[error(transparent)]
     Taken(#[from] TakenError),
+    #[error(transparent)]
+    Write(#[from] WriteError),
 }
 
 /// The path of an input as reports and messages show it.
@@ -53,42 +57,63 @@ pub(super) fn shown(path: &Path) -> &Path {
 }
 
 /// Checks that standard input is read at most once, that standard output takes at most one output,
-/// and that no output replaces an input or another output. Folders are checked by
+/// that no output replaces an input or another output, and that each can be written. Returns the
+/// files, none of which a further output may replace.
+///
+/// `folder` is one that the command creates, with the folders above it. It is checked by
 /// [`check_folder`].
 pub(super) fn check<'a>(
     inputs: impl IntoIterator<Item = Named<'a>>,
     outputs: impl IntoIterator<Item = Named<'a>>,
-) -> Result<(), StreamError> {
-    let (streams, inputs) = apart(inputs);
-    if let [first, second, ..] = streams[..] {
+    folder: Option<&Path>,
+) -> Result<FilesInUse, StreamError> {
+    let inputs: Vec<Named<'_>> = inputs.into_iter().collect();
+    let outputs: Vec<Named<'_>> = outputs.into_iter().collect();
+    if let [first, second, ..] = options_of_streams(&inputs)[..] {
         return Err(StreamError::InputTwice { first, second });
     }
-    let (streams, outputs) = apart(outputs);
-    if let [first, second, ..] = streams[..] {
+    if let [first, second, ..] = options_of_streams(&outputs)[..] {
         return Err(StreamError::OutputTwice { first, second });
     }
-    Ok(check_outputs(inputs, outputs)?)
-}
-
-/// The options that name a standard stream, and the paths of the other files.
-fn apart<'a>(files: impl IntoIterator<Item = Named<'a>>) -> (Vec<&'static str>, Vec<&'a Path>) {
-    let (mut streams, mut paths) = (Vec::new(), Vec::new());
-    for (option, path) in files {
-        if is_stream(path) {
-            streams.push(option);
-        } else {
-            paths.push(path);
+    let paths = |files: &[Named<'a>]| files.iter().map(|(_, path)| *path).collect::<Vec<_>>();
+    let in_use = check_outputs(paths(&inputs), paths(&outputs))?;
+    if let Some(folder) = folder {
+        in_use.check_folder(folder)?;
+    }
+    for (_, path) in outputs {
+        if !folder.is_some_and(|folder| will_be_created(path, folder)) {
+            check_writable(path)?;
         }
     }
-    (streams, paths)
+    Ok(in_use)
 }
 
-/// Checks that a folder is not `-`.
+/// Checks that an output whose name is found later replaces none of the files in use, and can be
+/// written.
+pub(super) fn check_further(path: &Path, in_use: &FilesInUse) -> Result<(), StreamError> {
+    in_use.check(path)?;
+    Ok(check_writable(path)?)
+}
+
+/// Whether the folder of a file does not exist yet, and is created with another folder.
+fn will_be_created(file: &Path, folder: &Path) -> bool {
+    let file = resolved(file);
+    let parent = file.parent();
+    parent.is_some_and(|parent| !parent.exists() && resolved(folder).starts_with(parent))
+}
+
+/// The options that name a standard stream.
+fn options_of_streams(files: &[Named<'_>]) -> Vec<&'static str> {
+    let streams = files.iter().filter(|(_, path)| is_stream(path));
+    streams.map(|(option, _)| *option).collect()
+}
+
+/// Checks that a folder is not `-`, and that files can be written into it.
 pub(super) fn check_folder((option, path): Named<'_>) -> Result<(), StreamError> {
     if is_stream(path) {
         Err(StreamError::Folder(option))
     } else {
-        Ok(())
+        Ok(output::check_folder(path)?)
     }
 }
 
@@ -179,8 +204,8 @@ mod tests {
     use super::*;
 
     fn message(inputs: &[Named<'_>], outputs: &[Named<'_>]) -> String {
-        let checked = check(inputs.iter().copied(), outputs.iter().copied());
-        checked.map_or_else(|error| error.to_string(), |()| String::new())
+        let checked = check(inputs.iter().copied(), outputs.iter().copied(), None);
+        checked.map_or_else(|error| error.to_string(), |_| String::new())
     }
 
     #[test]

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::error::PlotError;
 use super::figure::Figure;
-use super::figures::figures;
-use super::write::write_figures;
+use super::figures::{FIGURES, figures};
+use super::write::{ENDINGS, create_folder, stem, write_figures};
 use crate::output::{WriteError, write_file};
 use crate::read::{LazyScan, ReadError};
 use crate::report::{Picture, Report, html};
@@ -53,11 +53,13 @@ pub fn write_folder(
     reports: &[(&LazyScan, &Report)],
     folder: &Path,
 ) -> Result<Vec<PathBuf>, FolderError> {
-    let mut taken = HashSet::new();
-    let prefixes: Vec<String> = reports
-        .iter()
-        .map(|(_, report)| unique(&prefix(report), &mut taken))
-        .collect();
+    // Other outputs of a command may be in this folder, whatever becomes of the figures.
+    create_folder(folder)?;
+    let prefixes = prefixes(
+        reports
+            .iter()
+            .map(|(_, report)| (report.file.as_str(), report.wavelength_um)),
+    );
     let drawn: Vec<(Vec<Figure>, Vec<PathBuf>)> = reports
         .par_iter()
         .zip(&prefixes)
@@ -105,14 +107,37 @@ pub fn report_figures(
     }
 }
 
-/// The first part of the file names of a fit: its file and wavelength.
-fn prefix(report: &Report) -> String {
-    let stem = Path::new(&report.file).file_stem();
+/// The names of all files, except [`PAGE`], that [`write_folder`] may write for these scans.
+pub fn figure_files<'a>(scans: impl IntoIterator<Item = &'a LazyScan>) -> Vec<String> {
+    let scans: Vec<_> = scans
+        .into_iter()
+        .map(|scan| (scan.source(), scan.wavelength_um()))
+        .collect();
+    let scans = scans
+        .iter()
+        .map(|(file, wavelength)| (&**file, *wavelength));
+    let stems = prefixes(scans)
+        .into_iter()
+        .flat_map(|prefix| FIGURES.map(|name| stem(&prefix, name)));
+    stems
+        .flat_map(|stem| ENDINGS.map(|ending| format!("{stem}.{ending}")))
+        .collect()
+}
+
+/// The first part of the file names of each fit, from its file and wavelength.
+fn prefixes<'a>(fits: impl Iterator<Item = (&'a str, Option<f64>)>) -> Vec<String> {
+    let mut taken = HashSet::new();
+    fits.map(|(file, wavelength_um)| unique(&prefix(file, wavelength_um), &mut taken))
+        .collect()
+}
+
+fn prefix(file: &str, wavelength_um: Option<f64>) -> String {
+    let stem = Path::new(file).file_stem();
     let stem = stem.map_or_else(
         || "scan".to_owned(),
         |stem| stem.to_string_lossy().into_owned(),
     );
-    match report.wavelength_um {
+    match wavelength_um {
         Some(wavelength) => format!("{stem}-{wavelength}um"),
         None => stem,
     }

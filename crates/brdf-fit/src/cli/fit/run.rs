@@ -21,16 +21,19 @@ use crate::scan::Measurements;
 /// Fits all scans, and prints and writes the results. A problem with one scan or one output does
 /// not prevent the others.
 pub(in crate::cli) fn run(arguments: &Arguments) -> Outcome {
-    let document = arguments
+    let prepared = arguments
         .check_files()
-        .and_then(|()| Ok(arguments.document()?));
-    let document = match document {
-        Ok(document) => document,
+        .and_then(|in_use| Ok((in_use, arguments.document()?)));
+    let (in_use, document) = match prepared {
+        Ok(prepared) => prepared,
         Err(failure) => return print_failures([failure]),
     };
     let mut problems = Problems::default();
     let scans = read_all(arguments, document.as_ref(), &mut problems);
     let jobs = plan(&scans, arguments, document.as_ref(), &mut problems);
+    if let Err(failure) = arguments.check_figures(&jobs, &in_use) {
+        return problems.print().max(print_failures([failure]));
+    }
     let fits = fit_all(&jobs, arguments);
     let (mut scans, mut reports) = (Vec::new(), Vec::new());
     for (job, fit) in jobs.iter().zip(fits) {
@@ -128,11 +131,11 @@ fn joined(scans: &[LazyScan], problems: &mut Problems) -> Vec<LazyScan> {
 }
 
 /// A scan of one wavelength, and how it is fitted.
-struct Job<'a> {
-    scan: &'a LazyScan,
+pub(super) struct Job<'a> {
+    pub(super) scan: &'a LazyScan,
     /// The indices of the readings that the earlier fit left out.
-    left_out: &'a [usize],
-    options: FitOptions,
+    pub(super) left_out: &'a [usize],
+    pub(super) options: FitOptions,
 }
 
 /// The fits of all scans, in the order of the files, wavelengths and models.

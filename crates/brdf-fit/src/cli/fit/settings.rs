@@ -3,13 +3,15 @@
 use std::path::Path;
 
 use super::arguments::Arguments;
+use super::run::Job;
 use super::values::{ModelArgument, ReadingWeights};
 use crate::cli::failure::Failure;
 use crate::cli::stream::{self, Named, StreamError};
 use crate::fit::FitOptions;
 use crate::model::Model;
 use crate::objective::weights::{AssumedErrors, Weights};
-use crate::plot::PAGE;
+use crate::output::{FilesInUse, check_writable};
+use crate::plot::{PAGE, figure_files};
 use crate::read::ReadOptions;
 use crate::report::{Depth, Document, DocumentError, ModelChoice};
 use crate::scan::{Convention, Format};
@@ -79,9 +81,9 @@ impl Arguments {
         }
     }
 
-    /// Checks that no output replaces an input or another output, and that each standard stream is
-    /// used once.
-    pub(super) fn check_files(&self) -> Result<(), Failure> {
+    /// Checks that no output replaces an input or another output, that each can be written, and that
+    /// each standard stream is used once.
+    pub(super) fn check_files(&self) -> Result<FilesInUse, Failure> {
         let inputs = self.files.iter().map(|file| ("FILE", file.as_path()));
         let again = self.again.iter().map(|file| ("--again", file.as_path()));
         if let Some(folder) = &self.plot {
@@ -96,7 +98,29 @@ impl Arguments {
         Ok(stream::check(
             inputs.chain(again),
             self.data_files().chain(page),
+            self.plot.as_deref(),
         )?)
+    }
+
+    /// Checks that no figure of the scans, whose names depend on their wavelengths, replaces one of
+    /// the files in use, and that each can be written.
+    pub(super) fn check_figures(
+        &self,
+        jobs: &[Job<'_>],
+        in_use: &FilesInUse,
+    ) -> Result<(), Failure> {
+        let Some(folder) = &self.plot else {
+            return Ok(());
+        };
+        let scans = jobs.iter().map(|(scan, _)| *scan);
+        for name in figure_files(scans) {
+            let path = folder.join(name);
+            in_use.check(&path).map_err(StreamError::from)?;
+            if path.symlink_metadata().is_ok() {
+                check_writable(&path)?;
+            }
+        }
+        Ok(())
     }
 
     /// The files of `--json` and `--curves`.

@@ -10,15 +10,17 @@ use crate::cli::problems::place;
 use crate::cli::stream;
 use crate::fit::FitOptions;
 use crate::output::print_error;
-use crate::read::{ReadError, ReadOptions};
+use crate::read::{LazyScan, ReadError, ReadOptions};
 use crate::tradeoff::fitting::{FitTradeoff, fit_tradeoff, write_fit_tradeoffs};
 
 /// Measures each way to fit every wavelength of a file; [`Outcome::Incomplete`] if one of them
 /// cannot be fitted.
 pub(super) fn compare(fitting: &Fitting) -> Compared {
-    fitting.outputs.check(Some(("FILE", &fitting.file)))?;
+    let in_use = fitting.outputs.check(Some(("FILE", &fitting.file)))?;
     let failure = |error: ReadError| vec![Failure::from(error)];
     let scans = stream::scans(&fitting.file, &ReadOptions::default()).map_err(failure)?;
+    let wavelengths: Vec<Option<f64>> = scans.iter().map(LazyScan::wavelength_um).collect();
+    fitting.outputs.check_figures(&wavelengths, &in_use)?;
     let options = FitOptions {
         model: fitting.model,
         refractive_index: fitting.n.clone(),

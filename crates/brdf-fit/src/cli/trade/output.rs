@@ -8,17 +8,35 @@ use serde::Serialize;
 use super::arguments::Outputs;
 use crate::cli::failure::Failure;
 use crate::cli::stream::{self, Named};
-use crate::output;
+use crate::output::{self, FilesInUse};
 use crate::plot::Figure;
 
 /// A figure, and the wavelength in the name of its file if there are several.
 type Drawn = (Option<f64>, Figure);
 
 impl Outputs {
-    /// Checks that no output replaces the input or another output, and that each standard stream is
-    /// used once.
-    pub(super) fn check(&self, input: Option<Named<'_>>) -> Result<(), Vec<Failure>> {
-        stream::check(input, self.files()).map_err(|error| vec![error.into()])
+    /// Checks that no output replaces the input or another output, that each can be written, and that
+    /// each standard stream is used once.
+    pub(super) fn check(&self, input: Option<Named<'_>>) -> Result<FilesInUse, Vec<Failure>> {
+        stream::check(input, self.files(), None).map_err(|error| vec![error.into()])
+    }
+
+    /// Checks that the figure of each of several wavelengths, which has a name of its own, replaces
+    /// none of the files in use and can be written.
+    pub(super) fn check_figures(
+        &self,
+        wavelengths: &[Option<f64>],
+        in_use: &FilesInUse,
+    ) -> Result<(), Vec<Failure>> {
+        let plot = self.plot.as_ref().filter(|path| !stream::is_stream(path));
+        let Some(plot) = plot.filter(|_| wavelengths.len() > 1) else {
+            return Ok(());
+        };
+        for wavelength_um in wavelengths.iter().filter(|wavelength| wavelength.is_some()) {
+            stream::check_further(&named(plot, *wavelength_um), in_use)
+                .map_err(|error| vec![error.into()])?;
+        }
+        Ok(())
     }
 
     fn files(&self) -> impl Iterator<Item = Named<'_>> {

@@ -23,6 +23,16 @@ pub use arrangement::{Layer, figure_of};
 pub use paper::paper_figures;
 pub use tradeoff::{TradePoint, trade_picture};
 
+/// The names of all figures that [`figures`] may draw.
+pub(in crate::plot) const FIGURES: [&str; 6] = [
+    "theory-linear",
+    "theory-log",
+    "residuals",
+    "polar",
+    "profile-k1",
+    "reflectance",
+];
+
 /// The figures of a fit of one wavelength:
 ///
 /// - `theory-linear` and `theory-log`: readings and theory over the signed view angle;
@@ -133,15 +143,6 @@ mod tests {
         }
     }
 
-    const ALL: [&str; 6] = [
-        "theory-linear",
-        "theory-log",
-        "residuals",
-        "polar",
-        "profile-k1",
-        "reflectance",
-    ];
-
     #[test]
     fn a_fit_of_every_model_has_all_figures() {
         for model in Model::ALL {
@@ -151,7 +152,7 @@ mod tests {
             if model == Model::Lambert {
                 assert!(!names(&figures).contains(&"profile-k1"));
             } else {
-                assert_eq!(names(&figures), ALL, "{model}");
+                assert_eq!(names(&figures), FIGURES, "{model}");
             }
         }
     }
@@ -182,7 +183,10 @@ mod tests {
 
     #[test]
     fn few_and_extreme_readings_have_figures() {
-        assert_eq!(names(&report_figures(vec![reading(30.0, -30.0, 0.2)])), ALL);
+        assert_eq!(
+            names(&report_figures(vec![reading(30.0, -30.0, 0.2)])),
+            FIGURES
+        );
         let zeros = report_figures(
             (0..9)
                 .map(|i| reading(30.0, 10.0 * f64::from(i), 0.0))

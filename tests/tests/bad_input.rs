@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Output, Stdio};
 
 use brdf_tests::{fit_command, in_workspace, run_fit};
 use tempfile::TempDir;
@@ -371,55 +371,4 @@ fn a_full_standard_output_does_not_keep_the_files() {
         .unwrap();
     assert_eq!(status.code(), Some(BAD));
     assert!(fs::read_to_string(json).unwrap().contains("format_version"));
-}
-
-/// A file system of a few kilobytes, while the value is alive.
-struct SmallDisk {
-    folder: TempDir,
-}
-
-impl SmallDisk {
-    fn mount() -> Option<Self> {
-        let folder = tempfile::tempdir().unwrap();
-        let mounted = Command::new("mount")
-            .args(["-t", "tmpfs", "-o", "size=16k", "tmpfs"])
-            .arg(folder.path())
-            .stderr(Stdio::null())
-            .status();
-        if mounted.is_ok_and(|status| status.success()) {
-            return Some(Self { folder });
-        }
-        println!("skipped: no permission to mount a small file system");
-        None
-    }
-}
-
-impl Drop for SmallDisk {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.folder.path()).status();
-    }
-}
-
-#[test]
-fn a_full_disk_leaves_the_old_file_as_it_was() {
-    let Some(disk) = SmallDisk::mount() else {
-        return;
-    };
-    let target = disk.folder.path().join("out.json");
-    fs::write(&target, "old").unwrap();
-    let scan = in_workspace("data/measured/z307_on_aluminium.csv");
-    let output = fit_command()
-        .arg(scan)
-        .args(["--n", "1.5", "--json"])
-        .arg(&target)
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(BAD));
-    assert!(
-        stderr(&output).contains("No space left on device"),
-        "{}",
-        stderr(&output)
-    );
-    assert_eq!(fs::read_to_string(&target).unwrap(), "old");
-    assert_eq!(fs::read_dir(disk.folder.path()).unwrap().count(), 1);
 }

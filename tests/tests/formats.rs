@@ -51,121 +51,124 @@ fn assert_parameters(document: &Document, expected: &[(Option<f64>, [f64; 3])]) 
 
 const SAND_YELLOW: [f64; 3] = [0.225, 0.246, 0.9];
 
+/// The example files: the name, the format, the options, and what the report says of the reading.
+const EXAMPLES: &[(&str, Format, &[&str], [&str; 3])] = &[
+    (
+        "plane_symmetrical.bsdf",
+        Format::Zemax,
+        &[],
+        [
+            "scatter angles about the specular ray are converted to view angles",
+            "27 readings at or beyond 90 deg from the normal are left out",
+            "16 readings that repeat the value of the same direction are left out",
+        ],
+    ),
+    (
+        "asymmetrical.bsdf",
+        Format::Zemax,
+        &[],
+        [
+            "2 rotations of the sample are read as one isotropic sample",
+            "8 readings at or beyond 90 deg from the normal are left out",
+            "40 readings that repeat the value of the same direction are left out",
+        ],
+    ),
+    (
+        "beam.astm",
+        Format::Astm,
+        &["--n", "1.62"],
+        [
+            "angles are in degrees, as the file states",
+            "azimuth 0 is the forward side: azimuths are rotated by 180 deg",
+            "4 readings at or beyond 90 deg from the normal are left out",
+        ],
+    ),
+    (
+        "goniometer.txt",
+        Format::Goniometer,
+        &[],
+        [
+            "BRDF cos theta is divided by cos theta",
+            "4 readings not taken (no value) are left out",
+            "",
+        ],
+    ),
+    (
+        "fred.txt",
+        Format::Fred,
+        &[],
+        [
+            "azimuths of the scatter directions are counted from the specular direction, on the \
+                 forward side",
+            "4 readings at or beyond 90 deg from the normal are left out",
+            "",
+        ],
+    ),
+    (
+        "open_material.xompt",
+        Format::OpenMaterial,
+        &["--n", "1.62"],
+        [
+            "azimuth 0 is the source's side",
+            "2 readings not taken (no value) are left out",
+            "4 readings at or beyond 90 deg from the normal are left out",
+        ],
+    ),
+    (
+        "tracepro.txt",
+        Format::TracePro,
+        &["--n", "1.62", "--phi-zero", "source"],
+        [
+            "azimuth 0 is the source's side, as stated",
+            "42 readings at or beyond 90 deg from the normal are left out",
+            "16 readings of the specular direction at another azimuth are left out",
+        ],
+    ),
+    (
+        "specular.ssdd",
+        Format::Ssdd,
+        &[],
+        [
+            "scatter angles about the specular ray are converted to view angles",
+            "the specular reflectance is not read",
+            "16 readings with the value of the same direction before are left out",
+        ],
+    ),
+    (
+        "scan.xlsx",
+        Format::Workbook,
+        &[],
+        [
+            "the sheet \"Scan\" is read, \"Notes\" is not",
+            "64 cells have the value of the cell that they are merged with",
+            "4 readings not taken (no value) are left out",
+        ],
+    ),
+    (
+        "goniometer.xls",
+        Format::Workbook,
+        &[],
+        [
+            "the sheet \"Goniometer\" is read, \"Blank\" is not",
+            "BRDF cos theta is divided by cos theta",
+            "4 readings not taken (no value) are left out",
+        ],
+    ),
+    (
+        "percent.ods",
+        Format::Workbook,
+        &[],
+        [
+            "the sheet \"Scan\" is read, \"Raw\" (hidden) is not",
+            "reflectance factors are divided by pi",
+            "4 readings not taken (no value) are left out",
+        ],
+    ),
+];
+
 #[test]
 fn files_of_each_format_give_the_parameters_that_they_were_made_from() {
-    for (name, format, options, said) in [
-        (
-            "plane_symmetrical.bsdf",
-            Format::Zemax,
-            [].as_slice(),
-            [
-                "scatter angles about the specular ray are converted to view angles",
-                "27 readings at or beyond 90 deg from the normal are left out",
-                "16 readings that repeat the value of the same direction are left out",
-            ],
-        ),
-        (
-            "asymmetrical.bsdf",
-            Format::Zemax,
-            &[],
-            [
-                "2 rotations of the sample are read as one isotropic sample",
-                "8 readings at or beyond 90 deg from the normal are left out",
-                "40 readings that repeat the value of the same direction are left out",
-            ],
-        ),
-        (
-            "beam.astm",
-            Format::Astm,
-            &["--n", "1.62"],
-            [
-                "angles are in degrees, as the file states",
-                "azimuth 0 is the forward side: azimuths are rotated by 180 deg",
-                "4 readings at or beyond 90 deg from the normal are left out",
-            ],
-        ),
-        (
-            "goniometer.txt",
-            Format::Goniometer,
-            &[],
-            [
-                "BRDF cos theta is divided by cos theta",
-                "4 readings not taken (no value) are left out",
-                "",
-            ],
-        ),
-        (
-            "fred.txt",
-            Format::Fred,
-            &[],
-            [
-                "azimuths of the scatter directions are counted from the specular direction, on the \
-                 forward side",
-                "4 readings at or beyond 90 deg from the normal are left out",
-                "",
-            ],
-        ),
-        (
-            "open_material.xompt",
-            Format::OpenMaterial,
-            &["--n", "1.62"],
-            [
-                "azimuth 0 is the source's side",
-                "2 readings not taken (no value) are left out",
-                "4 readings at or beyond 90 deg from the normal are left out",
-            ],
-        ),
-        (
-            "tracepro.txt",
-            Format::TracePro,
-            &["--n", "1.62", "--phi-zero", "source"],
-            [
-                "azimuth 0 is the source's side, as stated",
-                "42 readings at or beyond 90 deg from the normal are left out",
-                "16 readings of the specular direction at another azimuth are left out",
-            ],
-        ),
-        (
-            "specular.ssdd",
-            Format::Ssdd,
-            &[],
-            [
-                "scatter angles about the specular ray are converted to view angles",
-                "the specular reflectance is not read",
-                "16 readings with the value of the same direction before are left out",
-            ],
-        ),
-        (
-            "scan.xlsx",
-            Format::Workbook,
-            &[],
-            [
-                "the sheet \"Scan\" is read, \"Notes\" is not",
-                "64 cells have the value of the cell that they are merged with",
-                "4 readings not taken (no value) are left out",
-            ],
-        ),
-        (
-            "goniometer.xls",
-            Format::Workbook,
-            &[],
-            [
-                "the sheet \"Goniometer\" is read, \"Blank\" is not",
-                "BRDF cos theta is divided by cos theta",
-                "4 readings not taken (no value) are left out",
-            ],
-        ),
-        (
-            "percent.ods",
-            Format::Workbook,
-            &[],
-            [
-                "the sheet \"Scan\" is read, \"Raw\" (hidden) is not",
-                "reflectance factors are divided by pi",
-                "4 readings not taken (no value) are left out",
-            ],
-        ),
-    ] {
+    for &(name, format, options, said) in EXAMPLES {
         let (printed, document) = fitted(&file(name), options);
         assert_parameters(&document, &[(Some(0.62), SAND_YELLOW)]);
         assert_eq!(document.reports[0].format, format);

@@ -10,6 +10,7 @@ mod export;
 mod failure;
 mod figures;
 mod fit;
+mod interrupt;
 mod outcome;
 mod problems;
 mod progress;
@@ -59,6 +60,7 @@ Examples:
 /// The program `brdf`: runs the subcommand that the command line names.
 pub fn brdf() -> ExitCode {
     let arguments = Brdf::parse_from(energy::command_line());
+    interrupt::prepare();
     threads::prepare();
     let outcome = match arguments.command {
         Command::Fit(arguments) => fit::run(&arguments),
@@ -73,6 +75,7 @@ pub fn brdf() -> ExitCode {
 /// The program `fit`: the same as `brdf fit`.
 pub fn fit() -> ExitCode {
     let arguments = fit::Arguments::parse_from(energy::command_line());
+    interrupt::prepare();
     threads::prepare();
     fit::run(&arguments).into()
 }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::path::{folder_of, resolved};
+use super::temporary::Temporary;
 use super::{is_standard_stream, write_stream};
 
 /// A file could not be written. An earlier file of that name is unchanged.
@@ -24,6 +25,9 @@ pub struct WriteError {
 /// Links are followed, and an existing file keeps its permissions; one that is read-only is not
 /// replaced. A path that is not a regular file, such as a pipe or a device, is written directly. `-`
 /// writes to standard output, in one piece once `write` has succeeded.
+///
+/// The temporary file is removed after an error, by [`abandon`](super::abandon), and after the end of a
+/// killed process by the next one that writes into the folder.
 ///
 /// # Errors
 ///
@@ -176,19 +180,7 @@ fn without_temporary_name(error: io::Error) -> io::Error {
 
 /// Whether a file can be created in a folder: whatever forbids it, one attempt finds out.
 fn check_creation(folder: &Path) -> io::Result<()> {
-    temporary(folder).map(drop)
-}
-
-pub(super) fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".brdf-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        // The permissions of any new file, before the user's umask.
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.tempfile_in(folder)
+    Temporary::create(folder).map(drop)
 }
 
 fn write_directly(
@@ -205,16 +197,15 @@ fn write_and_rename(
     permissions: Option<fs::Permissions>,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut file = temporary(folder_of(target))?;
-    let mut writer = BufWriter::new(file.as_file_mut());
+    let temporary = Temporary::create(folder_of(target))?;
+    let mut writer = BufWriter::new(&temporary.file);
     write(&mut writer)?;
     writer.flush()?;
     drop(writer);
     if let Some(permissions) = permissions {
-        file.as_file().set_permissions(permissions)?;
+        temporary.file.set_permissions(permissions)?;
     }
-    file.persist(target).map_err(|error| error.error)?;
-    Ok(())
+    temporary.persist(target)
 }
 
 #[cfg(test)]

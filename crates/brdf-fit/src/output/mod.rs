@@ -6,6 +6,7 @@
 mod conflict;
 mod file;
 mod path;
+mod temporary;
 
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -15,6 +16,7 @@ use crate::format::printable;
 pub use conflict::{FilesInUse, TakenError, check_outputs};
 pub use file::{WriteError, check_folder, check_writable, write_file, write_json};
 pub use path::resolved;
+pub use temporary::abandon;
 
 /// Whether a path is `-`, which stands for standard input or output.
 pub fn is_standard_stream(path: &Path) -> bool {

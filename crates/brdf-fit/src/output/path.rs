@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::fs::{self, Metadata};
 use std::path::{Path, PathBuf};
 
-use super::file::temporary;
+use super::temporary::Temporary;
 
 /// The largest number of links that are followed.
 const MOST_LINKS: u32 = 40;
@@ -121,9 +121,8 @@ fn differ_in_case_only(one: &Path, other: &Path) -> bool {
 
 /// Whether names that differ only in capitals are one file in a folder: found by a temporary file.
 fn ignores_case(folder: &Path) -> bool {
-    let temporary = temporary(folder);
-    temporary.is_ok_and(|file| {
-        let name = file.path().file_name().map(OsStr::to_ascii_uppercase);
+    Temporary::create(folder).is_ok_and(|temporary| {
+        let name = temporary.path.file_name().map(OsStr::to_ascii_uppercase);
         name.is_some_and(|name| folder.join(name).exists())
     })
 }

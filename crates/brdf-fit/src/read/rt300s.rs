@@ -119,9 +119,14 @@ fn is_turned(readings: &[Measurement]) -> bool {
     // The components of the view in both planes, to 1e-6.
     let place = |reading: &Measurement, along: f64, across: f64| {
         let (sin_phi, cos_phi) = reading.phi.sin_cos();
-        let component = |x: f64| (1e6 * reading.theta.sin() * x).round() as i64;
-        let psi = (1e6 * reading.psi).round() as i64;
-        (psi, component(along * cos_phi), component(across * sin_phi))
+        // Zero has one sign.
+        let rounded = |x: f64| ((1e6 * x).round() + 0.0).to_bits();
+        let component = |x: f64| rounded(reading.theta.sin() * x);
+        (
+            rounded(reading.psi),
+            component(along * cos_phi),
+            component(across * sin_phi),
+        )
     };
     let at: HashMap<_, f64> = readings
         .iter()

@@ -1,7 +1,7 @@
 //! The text of a file: its bytes within limits, its lines with their numbers, and errors that name
 //! the line.
 
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use super::error::{ReadError, Remedy};
@@ -21,7 +21,8 @@ pub(super) const HEAD: usize = 65_536;
 const CHUNK: u64 = 1 << 20;
 
 /// Reads a file to its end, after the bytes of it that were read before. Stops early once it is
-/// clear that the file is too large or, if it is text, has no lines.
+/// clear that the file is too large or, if it is text, has no lines. A file that becomes shorter meanwhile
+/// is an error.
 pub(super) fn read_bytes(
     mut before: Vec<u8>,
     mut reader: impl Read,
@@ -32,6 +33,7 @@ pub(super) fn read_bytes(
     before.reserve(capacity.saturating_sub(before.len()) + 1);
     while (before.len() as u64) <= MAX_FILE {
         if reader.by_ref().take(CHUNK).read_to_end(&mut before)? == 0 {
+            check_size(before.len() as u64, expected_size)?;
             break;
         }
         let tail = &before[before.len().saturating_sub(MAX_LINE + 1)..];
@@ -40,6 +42,15 @@ pub(super) fn read_bytes(
         }
     }
     Ok(before)
+}
+
+/// Whether a file has the bytes that it had when it was opened.
+fn check_size(read: u64, expected: u64) -> std::io::Result<()> {
+    if read >= expected {
+        return Ok(());
+    }
+    let message = format!("it ends after {read} of {expected} bytes: it was cut while it was read");
+    Err(std::io::Error::new(ErrorKind::UnexpectedEof, message))
 }
 
 fn is_line_end(byte: u8) -> bool {
@@ -74,6 +85,11 @@ impl<'a> Text<'a> {
     /// The number and the text of each line. A line ends with LF, CR or CR LF.
     pub(super) fn lines(&self) -> impl Iterator<Item = (u64, &'a [u8])> + use<'a> {
         lines(self.bytes)
+    }
+
+    /// Whether a line of the text is its last and has no line end.
+    pub(super) fn ends_within(&self, line: &[u8]) -> bool {
+        line.as_ptr_range().end == self.bytes.as_ptr_range().end
     }
 
     /// As [`lines`](Self::lines), with an error for a line that is too long.
@@ -269,4 +285,25 @@ pub(super) fn quotable(field: &[u8]) -> String {
         return text;
     }
     text.chars().take(LONGEST).chain("...".chars()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_becomes_shorter_while_it_is_read_is_an_error() {
+        let read = |bytes: &[u8], size| read_bytes(b"psi".to_vec(), bytes, size, true);
+        assert_eq!(read(b"_deg", 7).unwrap(), b"psi_deg");
+        assert_eq!(
+            read(b"_deg", 0).unwrap(),
+            b"psi_deg",
+            "a stream has no size"
+        );
+        let message = read(b"_d", 7).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "it ends after 5 of 7 bytes: it was cut while it was read"
+        );
+    }
 }

@@ -112,7 +112,7 @@ impl Arguments {
         let Some(folder) = &self.plot else {
             return Ok(());
         };
-        let scans = jobs.iter().map(|(scan, _)| *scan);
+        let scans = jobs.iter().map(|job| job.scan);
         for name in figure_files(scans) {
             let path = folder.join(name);
             in_use.check(&path).map_err(StreamError::from)?;

@@ -292,6 +292,7 @@ fn for_each_row(
             text,
             line: number,
             fields: &fields,
+            is_cut_off: fields.len() < header.columns.len() && text.ends_within(line),
             columns: &header.columns,
         })?;
     }

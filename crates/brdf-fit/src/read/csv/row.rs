@@ -6,6 +6,7 @@ use brdf_core::check_refractive_index;
 
 use super::header::Column;
 use super::roles::{AngleColumn, Readings, Roles};
+use crate::format::counted;
 use crate::read::conversion::{Kind, LeftOut, Scale, Values};
 use crate::read::error::ReadError;
 use crate::read::names::{AngleForm, LengthUnit};
@@ -22,6 +23,8 @@ pub(super) struct Row<'a> {
     /// The number of the line, counted from 1.
     pub(super) line: u64,
     pub(super) fields: &'a [&'a [u8]],
+    /// Whether the file ends within the line, before the last column.
+    pub(super) is_cut_off: bool,
     pub(super) columns: &'a [Column],
 }
 
@@ -269,9 +272,18 @@ impl RowReader {
 impl Row<'_> {
     /// # Errors
     ///
-    /// The row has more fields than the header has columns, and one of them is not blank.
+    /// The row has more fields than the header has columns, and one of them is not blank; or it ends the
+    /// file, has fewer fields and no line end, as of a file that was cut off.
     pub(super) fn check_length(&self) -> Result<(), ReadError> {
         let expected = self.columns.len();
+        if self.is_cut_off {
+            let found = counted(self.fields.len(), "field");
+            let message = format!(
+                "the last line has {found} and no line end: expected {expected}, as in the header (is \
+                 the file cut off?)"
+            );
+            return Err(self.text.line_error(self.line, message));
+        }
         let mut surplus = self.fields.iter().skip(expected);
         if surplus.any(|field| !field.trim_ascii().is_empty()) {
             let found = self.fields.len();

@@ -368,6 +368,20 @@ fn readings_that_were_not_taken_or_are_below_the_horizon_are_counted() {
 }
 
 #[test]
+fn a_table_that_is_cut_off_within_a_line_is_an_error() {
+    let cut = error(format!("{HEADER}10,-10,0.5\n10,0"));
+    let expected = "line 3: the last line has 2 fields and no line end: expected 3";
+    assert!(cut.contains(expected), "{cut}");
+    for whole in [
+        "10,-10,0.5\n10,0\n",
+        "10,-10,0.5\n10,0,",
+        "10,0\n10,-10,0.5",
+    ] {
+        assert_eq!(scan(&format!("{HEADER}{whole}")).readings().len(), 1);
+    }
+}
+
+#[test]
 fn a_missing_standard_deviation_is_none() {
     let scan = scan("psi_deg,theta_deg,brdf_per_sr,sigma_per_sr\n1,2,3,0.1\n1,2,3,\n1,2,3\n\u{1a}");
     let sigmas: Vec<_> = scan.readings().iter().map(|r| r.sigma).collect();

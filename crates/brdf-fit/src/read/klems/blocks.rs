@@ -44,11 +44,8 @@ impl<'a> Chosen<'a> {
         let directions = ["Reflection Front", "Reflection Back"];
         let has = |direction: &&str| blocks.iter().any(|block| block.is_in(direction));
         let Some(direction) = directions.into_iter().find(has) else {
-            let found: Vec<&str> = blocks
-                .iter()
-                .map(|block| block.direction.as_str())
-                .collect();
-            let message = if found.is_empty() {
+            let found = blocks.iter().map(|block| block.direction.as_str());
+            let message = if blocks.is_empty() {
                 "has no WavelengthDataBlock: expected blocks of reflection".to_owned()
             } else {
                 format!(

@@ -61,12 +61,12 @@ fn xlsx(sheets: &[Xlsx<'_>]) -> Vec<u8> {
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     const OFFICE: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     let sheets = || sheets.iter().enumerate();
-    let list: String = sheets()
+    let list: Vec<String> = sheets()
         .map(|(i, Xlsx(name, state, ..))| {
             format!("<sheet name=\"{name}\" sheetId=\"{i}\" state=\"{state}\" r:id=\"r{i}\"/>")
         })
         .collect();
-    let relations: String = sheets()
+    let relations: Vec<String> = sheets()
         .map(|(i, _)| {
             format!(
                 "<Relationship Id=\"r{i}\" Type=\"{OFFICE}/worksheet\" Target=\"worksheets/sheet{i}.xml\"/>"
@@ -80,7 +80,11 @@ fn xlsx(sheets: &[Xlsx<'_>]) -> Vec<u8> {
         )
     };
     let mut files: Vec<_> = sheets().map(sheet).collect();
-    let relations = format!("<Relationships xmlns=\"r\">{relations}</Relationships>");
+    let relations = format!(
+        "<Relationships xmlns=\"r\">{}</Relationships>",
+        relations.concat()
+    );
+    let list = list.concat();
     let workbook = format!(
         "<workbook xmlns=\"{MAIN}\" xmlns:r=\"{OFFICE}\"><sheets>{list}</sheets></workbook>"
     );

@@ -58,6 +58,25 @@ pub fn shortest(value: f64) -> String {
     if plain.len() < six.len() { plain } else { six }
 }
 
+/// All digits of a number, in the form that is read back to the last bit: decimal, or scientific where the
+/// decimal form would begin or end with many zeros.
+///
+/// ```
+/// use brdf_fit::format::exact;
+///
+/// assert_eq!(exact(0.25), "0.25");
+/// assert_eq!(exact(6.5e-12), "6.5e-12");
+/// assert_eq!(exact(1e300), "1e300");
+/// ```
+pub fn exact(value: f64) -> String {
+    let is_usual = value == 0.0 || (1e-5..1e16).contains(&value.abs());
+    if is_usual || !value.is_finite() {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// Six significant digits, in decimal or scientific notation, whichever is shorter.
 pub fn digits(value: f64) -> String {
     if value == 0.0 {
@@ -77,10 +96,13 @@ pub fn digits(value: f64) -> String {
 }
 
 /// A number to two significant digits of its error, with at most 8 decimals; in scientific notation
-/// where the number is below 1e-4 and would need more.
+/// where the number is below 1e-4 and would need more, and from 1e15 on.
 pub fn rounded(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite() && value.is_finite()) {
-        return format!("{value}");
+        return exact(value);
+    }
+    if value.abs() >= 1e15 {
+        return format!("{value:.3e}");
     }
     #[expect(clippy::cast_possible_truncation, reason = "an exponent of ten")]
     let decimals = (1.0 - error.log10().floor()) as i64;
@@ -92,12 +114,22 @@ pub fn rounded(value: f64, error: f64) -> String {
     }
 }
 
-/// A percentage with two significant digits, whole above 10.
+/// A number with fixed decimals; with six significant digits from a million on.
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+    if value.abs() < 1e6 {
+        format!("{value:.decimals$}")
+    } else {
+        digits(value)
+    }
+}
+
+/// A percentage with two significant digits, whole above 10, in scientific notation from a million on.
 pub fn two_digits(value: f64) -> String {
     if !value.is_finite() {
         return "?".to_owned();
     }
     let decimals = match value.abs() {
+        size if size >= 999_999.5 => return format!("{value:.1e}"),
         size if size >= 9.95 => 0,
         size if size >= 0.995 => 1,
         size if size >= 0.0995 => 2,

@@ -62,12 +62,15 @@ pub(super) fn cross_validation(
         }
         let percent = |(errors, readings): (f64, f64)| 100.0 * errors / readings;
         let sums = sums.filter(|(_, readings)| *readings > 0.0);
-        IncidenceError::new(segment, sums.map(percent))
+        // A prediction may be larger than any number.
+        let error = sums.map(percent).filter(|error| error.is_finite());
+        IncidenceError::new(segment, error)
     });
     let incidences = incidences.collect();
-    (below > 0.0).then(|| CrossValidation {
+    let e_percent = 100.0 * above / below;
+    e_percent.is_finite().then_some(CrossValidation {
         incidences,
-        e_percent: 100.0 * above / below,
+        e_percent,
     })
 }
 

@@ -79,7 +79,7 @@ pub struct Deviations {
 
 impl Deviations {
     /// The relative errors of a fit over the readings that it uses; `None` without a reading above
-    /// zero.
+    /// zero, and where an error is larger than any number.
     pub(crate) fn of(measurements: &Measurements, fit: &Fit) -> Option<Self> {
         let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;
         let weights = fit.options.weights.for_readings(measurements)?;
@@ -100,11 +100,18 @@ impl Deviations {
             all.append(&mut own);
         }
         all.sort_by(f64::total_cmp);
-        Some(Self {
+        let deviations = Self {
             median_percent: 100.0 * quantile(&all, 0.5)?,
             ninety_percent: 100.0 * quantile(&all, 0.9)?,
             incidences,
-        })
+        };
+        // Against readings next to zero, an error may be larger than any number.
+        let are_finite = deviations.ninety_percent.is_finite()
+            && deviations
+                .incidences
+                .iter()
+                .all(|(_, error)| error.is_finite());
+        are_finite.then_some(deviations)
     }
 }
 

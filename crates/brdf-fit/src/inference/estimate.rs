@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::format::rounded;
+use crate::format::{exact, fixed, rounded};
 use crate::model::Parameter;
 
 /// A confidence interval. An end is `None` where the interval is unbounded within the range that is
@@ -140,15 +140,19 @@ impl fmt::Display for Estimate {
             Knowledge::OnBound { interval_95 } => {
                 let end = |x: f64| rounded(x, 0.3 * (x - value).abs());
                 match (interval_95.from, interval_95.to) {
-                    (_, Some(to)) if to > value => f.pad(&format!("{value} (< {})", end(to))),
-                    (Some(from), _) if from < value => f.pad(&format!("{value} (> {})", end(from))),
-                    _ => f.pad(&value.to_string()),
+                    (_, Some(to)) if to > value => {
+                        f.pad(&format!("{} (< {})", exact(value), end(to)))
+                    }
+                    (Some(from), _) if from < value => {
+                        f.pad(&format!("{} (> {})", exact(value), end(from)))
+                    }
+                    _ => f.pad(&exact(value)),
                 }
             }
             Knowledge::ConstrainedByEnergy => {
-                f.pad(&format!("{value:.4} (constrained by rho <= 1)"))
+                f.pad(&format!("{} (constrained by rho <= 1)", fixed(value, 4)))
             }
-            Knowledge::NoInterval { .. } => f.pad(&format!("{value:.4} (no interval)")),
+            Knowledge::NoInterval { .. } => f.pad(&format!("{} (no interval)", fixed(value, 4))),
             Knowledge::NotDetermined { .. } => f.pad("not determined"),
         }
     }

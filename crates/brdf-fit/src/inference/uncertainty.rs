@@ -157,7 +157,7 @@ impl Uncertainty {
     /// Correlation coefficients of the covered parameters, row by row: `C_ij / sqrt(C_ii C_jj)`.
     pub fn correlations(&self) -> Vec<Vec<f64>> {
         let c = &self.covariance;
-        let one = |i: usize, j: usize| c[i][j] / (c[i][i] * c[j][j]).sqrt();
+        let one = |i: usize, j: usize| c[i][j] / c[i][i].sqrt() / c[j][j].sqrt();
         (0..c.len())
             .map(|i| (0..c.len()).map(|j| one(i, j)).collect())
             .collect()
@@ -296,7 +296,7 @@ impl Inference<'_> {
             return Knowledge::OnBound {
                 interval_95: Interval {
                     from: upper.map(|_| 0.0),
-                    to: upper.flatten(),
+                    to: upper.flatten().filter(|to| to.is_finite()),
                 },
             };
         }

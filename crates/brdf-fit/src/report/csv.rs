@@ -8,7 +8,7 @@ use brdf_core::{AnyBrdf, ModelParameters, Parameters};
 
 use super::run::Report;
 use crate::fit::Fit;
-use crate::format::in_degrees;
+use crate::format::{exact, in_degrees};
 use crate::inference::{Estimate, Quality, Warning};
 use crate::model::Parameter;
 use crate::read::LazyScan;
@@ -111,7 +111,7 @@ pub fn write_models(reports: &[Report], writer: impl io::Write) -> io::Result<()
 
 /// A number, or nothing.
 fn number(value: Option<f64>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
+    value.map_or_else(String::new, exact)
 }
 
 /// The values of [`PARAMETER_COLUMNS`].
@@ -246,7 +246,7 @@ fn write_readings(
     theories: &[Option<AnyBrdf>],
     csv: &mut csv::Writer<impl io::Write>,
 ) -> io::Result<()> {
-    let degrees = |angle: f64| in_degrees(angle).to_string();
+    let degrees = |angle: f64| exact(in_degrees(angle));
     let readings = measurements.readings();
     for incidence in measurements.incidences() {
         let mut order = incidence.readings;
@@ -264,7 +264,7 @@ fn write_readings(
                 degrees(reading.psi),
                 degrees(reading.theta),
                 degrees(reading.phi),
-                reading.brdf.to_string(),
+                exact(reading.brdf),
                 number(reading.sigma),
             ];
             let values = theories

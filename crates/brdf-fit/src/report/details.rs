@@ -8,7 +8,7 @@ use brdf_core::Parameters;
 use super::{incidences, models, stages};
 use crate::fit::robust::REJECTED;
 use crate::fit::{Fit, rms_percent};
-use crate::format::{counted, digits, in_degrees, shortest, two_digits};
+use crate::format::{counted, digits, exact, fixed, in_degrees, shortest, two_digits};
 use crate::inference::{Assessment, Deviations, Physics, Uncertainty};
 use crate::model::{K1_RANGE, Parameter};
 use crate::objective::MOST_FOLDS;
@@ -110,12 +110,12 @@ pub(super) fn options_lines(fit: &Fit, rejected: &[Measurement]) -> String {
         for (reading, rejected) in rejected.iter().zip(&robust.rejected) {
             let _ = writeln!(
                 text,
-                "    psi {} deg, theta {} deg, phi {} deg: {} 1/sr, residual {:+.1} standard deviations",
+                "    psi {} deg, theta {} deg, phi {} deg: {} 1/sr, residual {} standard deviations",
                 in_degrees(reading.psi),
                 in_degrees(reading.theta),
                 in_degrees(reading.phi),
-                reading.brdf,
-                rejected.deviations
+                exact(reading.brdf),
+                fixed(rejected.deviations, 1)
             );
         }
     }
@@ -144,7 +144,9 @@ pub(super) fn correlation_line(uncertainty: &Uncertainty) -> String {
     let mut pairs = Vec::new();
     for (i, first) in uncertainty.covered.iter().enumerate() {
         for (j, second) in uncertainty.covered.iter().enumerate().skip(i + 1) {
-            if let Some(value) = correlations.get(i).and_then(|row| row.get(j)) {
+            let value = correlations.get(i).and_then(|row| row.get(j));
+            // Variances may be larger than any number.
+            if let Some(value) = value.filter(|value| value.is_finite()) {
                 pairs.push(format!("{first}-{second} {value:+.2}"));
             }
         }
@@ -217,7 +219,7 @@ pub(super) fn physics_lines(physics: &Physics, fit: &Fit) -> String {
     let values: Vec<String> = physics
         .reflectance
         .iter()
-        .map(|point| format!("{:.3} at {}", point.rho, point.psi_deg))
+        .map(|point| format!("{} at {}", fixed(point.rho, 3), point.psi_deg))
         .collect();
     let mut text = format!("  reflectance rho(psi): {} deg", values.join(", "));
     text += &physics.violation_deg.map_or_else(

@@ -1,7 +1,7 @@
 //! The fitted parameters with their intervals as a table.
 
 use super::table::{Column, Row, Table};
-use crate::format::{digits, rounded};
+use crate::format::{digits, fixed, rounded};
 use crate::inference::{Assessment, Estimate, Interval, Knowledge, Uncertainty, Without};
 use crate::inference::{most_influential, rests_on};
 
@@ -67,9 +67,7 @@ fn row(estimate: &Estimate, without: Option<&Without>) -> Row {
         Knowledge::ConstrainedByEnergy => {
             Row::with_remark([name, digits(value)], "constrained by rho <= 1")
         }
-        Knowledge::NoInterval { .. } => {
-            Row::with_remark([name, format!("{value:.3}")], "no interval")
-        }
+        Knowledge::NoInterval { .. } => Row::with_remark([name, fixed(value, 3)], "no interval"),
         Knowledge::NotDetermined { reason, .. } => {
             Row::with_remark([name], format!("not determined: {reason}"))
         }

@@ -81,7 +81,7 @@ pub use read::{LazyScan, ReadError, ReadOptions};
 pub use report::{Depth, Document, DocumentError, ModelChoice, Report};
 pub use scan::{
     Convention, Format, Incidence, Measurement, MeasurementError, Measurements, Metadata,
-    RefractiveIndex, Side, synthetic,
+    ReadSettings, RefractiveIndex, Side, synthetic,
 };
 pub use solver::{Method, SolverError, Termination};
 

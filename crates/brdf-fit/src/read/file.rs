@@ -118,12 +118,13 @@ fn may_be_merl(head: &[u8], options: &ReadOptions) -> bool {
 fn from_bytes(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Measurements, ReadError> {
     let known = options.format.or_else(|| Format::detect(bytes, path));
     let reader = Reader::of(known.unwrap_or_default());
-    let all = reader
+    let mut all = reader
         .read(path, bytes, options)
         .map_err(|error| match known {
             Some(_) => error,
             None => error.with_known_formats(),
         })?;
+    all.read_settings = options.settings();
     Ok(match options.sample {
         // The channels of a MERL table are sampled one after the other.
         Some(count) if reader.format != Format::Merl => all.sampled(count),

@@ -12,6 +12,10 @@ use crate::scan::Measurements;
 
 /// The readings of one wavelength of a file, which are read when they are needed.
 #[derive(Debug, Clone, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is one for each wavelength, and nearly all are loaded"
+)]
 pub enum LazyScan {
     /// The readings are in memory.
     Loaded(Measurements),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::error::ReadError;
-use crate::scan::{Convention, Format, Side};
+use crate::scan::{Convention, Format, ReadSettings, Side};
 
 /// The key of the sheet of a workbook.
 pub(super) const SHEET: &str = "sheet";
@@ -54,6 +54,15 @@ impl ReadOptions {
         Convention {
             theta_positive: self.theta_positive.unwrap_or(of_format.theta_positive),
             phi_zero: self.phi_zero.unwrap_or(of_format.phi_zero),
+        }
+    }
+
+    /// What a scan that is read with these options keeps of them.
+    pub(super) fn settings(&self) -> ReadSettings {
+        ReadSettings {
+            columns: self.columns.clone(),
+            declarations: self.declarations.clone(),
+            joined: Vec::new(),
         }
     }
 

@@ -141,14 +141,20 @@ impl Document {
         Ok(document)
     }
 
-    /// The first report on a file with this path, or else with this file name.
+    /// The first report on a file with this path, or else with this file name: on the file alone, or
+    /// joined with others.
     pub fn report_on(&self, source: &Path) -> Option<&Report> {
-        let reports = || self.reports.iter();
-        let same_name =
-            |report: &&Report| Path::new(&report.file).file_name() == source.file_name();
-        reports()
-            .find(|report| Path::new(&report.file) == source)
-            .or_else(|| reports().find(same_name))
+        let is_on = |report: &Report, is_file: &dyn Fn(&Path) -> bool| {
+            let mut files = std::iter::once(&report.file).chain(&report.read_settings.joined);
+            files.any(|file| is_file(Path::new(file)))
+        };
+        let mut reports = self.reports.iter();
+        let same_path = reports.find(|report| is_on(report, &|file| file == source));
+        let same_name = |file: &Path| file.file_name() == source.file_name();
+        same_path.or_else(|| {
+            let mut reports = self.reports.iter();
+            reports.find(|report| is_on(report, &same_name))
+        })
     }
 
     /// The options of the fit that matches a scan of a file at one wavelength, in micrometres.

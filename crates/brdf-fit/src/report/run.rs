@@ -8,7 +8,7 @@ use crate::inference::{Tests, assess_observed, sufficient_model, warnings};
 use crate::model::{Model, Parameter};
 use crate::objective::weights::AssumedErrors;
 use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
-use crate::scan::{Convention, Format, Measurement, Measurements, Metadata};
+use crate::scan::{Convention, Format, Measurement, Measurements, Metadata, ReadSettings};
 use crate::solver::Termination;
 
 /// The result for one wavelength of one file.
@@ -44,6 +44,13 @@ pub struct Report {
     /// Format of the file.
     #[serde(default)]
     pub format: Format,
+    /// What was said about the file when it was read.
+    #[serde(
+        default,
+        rename = "reading",
+        skip_serializing_if = "ReadSettings::is_empty"
+    )]
+    pub read_settings: ReadSettings,
     /// Conversions and omissions made while the file was read, one sentence each.
     #[serde(default)]
     pub conversions: Vec<String>,
@@ -141,6 +148,7 @@ impl Report {
             ignored_columns: measurements.ignored_columns.clone(),
             convention: measurements.convention,
             format: measurements.format,
+            read_settings: measurements.read_settings.clone(),
             conversions: measurements.conversions.clone(),
             wavelength_um: measurements.wavelengths().first().copied().flatten(),
             readings: measurements.readings().len(),

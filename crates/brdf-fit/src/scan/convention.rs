@@ -144,6 +144,29 @@ impl Convention {
     }
 }
 
+/// What was said about a file, beside its format and its convention, when it was read.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ReadSettings {
+    /// What columns are whose names do not say it: see
+    /// [`ReadOptions::columns`](crate::read::ReadOptions::columns).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub columns: Vec<(String, String)>,
+    /// Keys and values in place of those of the comments: see
+    /// [`ReadOptions::declarations`](crate::read::ReadOptions::declarations).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub declarations: Vec<(String, String)>,
+    /// The files that are joined as one scan; empty for a file on its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub joined: Vec<String>,
+}
+
+impl ReadSettings {
+    /// Whether nothing was said.
+    pub fn is_empty(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// The differences from the convention of the model; empty if there are none.
 impl fmt::Display for Convention {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

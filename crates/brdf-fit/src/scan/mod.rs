@@ -5,7 +5,7 @@ mod refractive_index;
 mod subsample;
 pub mod synthetic;
 
-pub use convention::{Convention, Format, Side};
+pub use convention::{Convention, Format, ReadSettings, Side};
 pub use refractive_index::RefractiveIndex;
 pub(crate) use refractive_index::WAVELENGTH_TOLERANCE;
 
@@ -159,6 +159,8 @@ pub struct Measurements {
     pub convention: Convention,
     /// The format of the file.
     pub format: Format,
+    /// What was said about the file when it was read.
+    pub read_settings: ReadSettings,
     /// The conversions between the file and the readings, and the values that were left out with
     /// their count, one sentence each.
     pub conversions: Vec<String>,
@@ -177,6 +179,8 @@ struct Stored {
     ignored_columns: Vec<String>,
     convention: Convention,
     format: Format,
+    #[serde(default)]
+    read_settings: ReadSettings,
     conversions: Vec<String>,
     incidence_class: Option<f64>,
     readings: Vec<Measurement>,
@@ -194,6 +198,7 @@ impl TryFrom<Stored> for Measurements {
             ignored_columns: stored.ignored_columns,
             convention: stored.convention,
             format: stored.format,
+            read_settings: stored.read_settings,
             conversions: stored.conversions,
             incidence_class: stored.incidence_class.filter(is_width),
             ..checked
@@ -251,12 +256,12 @@ impl Measurements {
     /// The metadata are those of the first file. `None` where there is no scan, or where two scans state
     /// different refractive indices.
     pub fn joined(scans: Vec<Self>) -> Option<Self> {
+        // A file of several wavelengths is several scans.
+        let mut files: Vec<String> = scans.iter().map(|scan| scan.source.clone()).collect();
+        files.dedup();
         let mut scans = scans.into_iter();
         let mut joined = scans.next()?;
-        let first = joined.source.clone();
-        let mut others = 0;
         for scan in scans {
-            others += 1;
             match (&joined.refractive_index, scan.refractive_index) {
                 (Some(one), Some(other)) if *one != other => return None,
                 (None, other) => joined.refractive_index = other,
@@ -274,9 +279,12 @@ impl Measurements {
                 .extend(new(&joined.ignored_columns, ignored));
             joined.readings.extend(scan.readings);
         }
-        if others > 0 {
-            joined.source = format!("{first} and {}", counted(others, "other file"));
+        if let [first, others @ ..] = files.as_slice()
+            && !others.is_empty()
+        {
+            joined.source = format!("{first} and {}", counted(others.len(), "other file"));
         }
+        joined.read_settings.joined = files;
         Some(joined)
     }
 
@@ -423,6 +431,7 @@ impl Measurements {
             ignored_columns: self.ignored_columns.clone(),
             convention: self.convention,
             format: self.format,
+            read_settings: self.read_settings.clone(),
             conversions: self.conversions.clone(),
             incidence_class: self.incidence_class,
             readings: Vec::new(),

@@ -35,6 +35,17 @@ pub(super) enum OpenError {
         /// The scan as the fit names it.
         scan: String,
     },
+    /// The scans that a fit joined are no longer of one sample.
+    #[error(
+        "{}: is a fit of {scans}, which state different refractive indices now: expected one sample",
+        fit.display()
+    )]
+    NotOneSample {
+        /// The path of the fit.
+        fit: PathBuf,
+        /// The scans as the fit names them.
+        scans: String,
+    },
 }
 
 /// Opens a scan, or the scans of a document of fits together with these.
@@ -96,6 +107,8 @@ fn options_of(report: &Report) -> ReadOptions {
         format: Some(report.format),
         theta_positive: Some(report.convention.theta_positive),
         phi_zero: Some(report.convention.phi_zero),
+        columns: report.read_settings.columns.clone(),
+        declarations: report.read_settings.declarations.clone(),
         ..ReadOptions::default()
     }
 }
@@ -121,15 +134,19 @@ fn read_content(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<S
 /// Opens the scans of a document of fits, with their fits.
 fn open_fit(path: &Path) -> Result<Vec<Opened>, OpenError> {
     let document = Document::read(path)?;
-    let mut files: Vec<(&str, ReadOptions)> = Vec::new();
+    let mut files: Vec<(&str, &[String], ReadOptions)> = Vec::new();
     for report in &document.reports {
-        let file = (report.file.as_str(), options_of(report));
+        let joined = report.read_settings.joined.as_slice();
+        let file = (report.file.as_str(), joined, options_of(report));
         if !files.contains(&file) {
             files.push(file);
         }
     }
-    let open_file = |(name, options): (&str, ReadOptions)| {
-        let (file, mut scans) = read_scan_of_fit(path, name, &options)?;
+    let open_file = |(name, joined, options): (&str, &[String], ReadOptions)| {
+        let (file, mut scans) = match joined {
+            [] => read_scan_of_fit(path, name, &options)?,
+            files => (None, read_joined_scans_of_fit(path, name, files, &options)?),
+        };
         for scan in &mut scans {
             adopt_fit(scan, &document, name);
         }
@@ -152,6 +169,25 @@ fn adopt_fit(scan: &mut Scan, document: &Document, file: &str) {
         scan.adopt_fit(report.clone());
         scan.committed = scan.parameters;
     }
+}
+
+/// The scans that a fit joined as one sample, one for each wavelength.
+fn read_joined_scans_of_fit(
+    fit: &Path,
+    name: &str,
+    files: &[String],
+    options: &ReadOptions,
+) -> Result<Vec<Scan>, OpenError> {
+    let mut parts = Vec::new();
+    for file in files {
+        let (_, scans) = read_scan_of_fit(fit, file, options)?;
+        parts.extend(scans.iter().map(|scan| scan.measurements.as_ref().clone()));
+    }
+    let joined = Measurements::joined(parts).ok_or_else(|| OpenError::NotOneSample {
+        fit: fit.to_owned(),
+        scans: name.to_owned(),
+    })?;
+    Ok(joined.by_wavelength().into_iter().map(Scan::new).collect())
 }
 
 /// The scan that a fit names, and its file: at the given path, relative to the folder of the fit, in

@@ -7,8 +7,8 @@ use crate::common::{
     NoDialogs, Window, click, click_role, drop_file, drop_path, empty, enter_path, menu,
     open_built_in, open_path, settle, shows, type_number, window_with, with_z307, z307,
 };
-use brdf_fit::report::Document;
-use brdf_fit::{Convention, Side};
+use brdf_fit::report::{Depth, Document, Report};
+use brdf_fit::{Convention, FitOptions, Measurements, RefractiveIndex, Side};
 use brdf_viewer::dialogs::Dialogs;
 use brdf_viewer::intent::Intent;
 use brdf_viewer::job::Event;
@@ -597,6 +597,41 @@ fn a_fit_of_several_files_opens_a_sample_for_each() {
     click(&mut window, "close a");
     let error = refused(&mut window, "Save fit as JSON...", &json);
     assert!(error.contains("2 scans, of which 1 are open"), "{error}");
+}
+
+#[test]
+fn a_fit_of_joined_files_opens_one_sample_of_all() {
+    let folder = tempfile::tempdir().unwrap();
+    let (text, json) = (z307(), folder.path().join("fit.json"));
+    let (header, rows) = text.split_at(text.find("0.63079").unwrap());
+    let rows: Vec<&str> = rows
+        .lines()
+        .filter(|row| row.starts_with("0.63079"))
+        .collect();
+    let halves = rows.split_at(rows.len() / 2);
+    let parts = [("a.csv", halves.0), ("b.csv", halves.1)].map(|(name, rows)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, format!("{header}{}\n", rows.join("\n"))).unwrap();
+        Measurements::read_csv(&path).unwrap()
+    });
+    let joined = Measurements::joined(parts.to_vec()).unwrap();
+    let options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(1.5)),
+        ..FitOptions::default()
+    };
+    let (report, _) = Report::new(&joined, &options, Depth::Fit);
+    std::fs::write(
+        &json,
+        serde_json::to_string(&Document::new(vec![report])).unwrap(),
+    )
+    .unwrap();
+    let mut window = empty();
+    open_path(&mut window, &json);
+    let state = &window.state().state;
+    assert_eq!(state.samples.len(), 1, "{:?}", state.errors());
+    let scan = state.active_sample().unwrap().scan();
+    assert_eq!(scan.measurements.readings(), joined.readings());
+    assert!(scan.last_fit.is_some());
 }
 
 #[test]

@@ -43,8 +43,9 @@ pub(in crate::cli) struct Arguments {
     /// Fit with the options of an earlier run, from the file that it wrote with --json
     ///
     /// Each scan takes the options of the fit at its wavelength (within 1 %), and of several those
-    /// of the fit of the same file. The format of the file and the sides of its angles are taken
-    /// from there as well; --sample must be repeated. - is standard input.
+    /// of the fit of the same file. The format of the file, the sides of its angles, --columns,
+    /// --declare and --join are taken from there as well, each unless it is given; --sample must be
+    /// repeated. - is standard input.
     #[arg(long, value_name = "FILE", conflicts_with_all = FIT_OPTIONS)]
     pub(super) again: Option<PathBuf>,
 

@@ -88,7 +88,7 @@ fn read_all(
             }
         }
     }
-    match arguments.join {
+    match arguments.joins(document) {
         false => scans,
         // A sample of which a part is missing is not fitted.
         true if !all_read => Vec::new(),

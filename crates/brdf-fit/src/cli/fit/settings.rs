@@ -141,16 +141,18 @@ impl Arguments {
     }
 
     /// How a file is read: as the options say, next as the document states for this file, and next
-    /// with the sides that the options of the earlier run gave to its first file.
+    /// with the sides, columns and declarations that the options of the earlier run gave to its first
+    /// file.
     pub(super) fn read_options(&self, file: &Path, document: Option<&Document>) -> ReadOptions {
         let known = document.and_then(|document| document.report_on(stream::shown(file)));
-        let first = document
-            .map(|document| &document.reports[0])
-            .filter(|first| {
-                matches!(first.format, Format::Csv | Format::Goniometer)
-                    && first.convention != Convention::default()
-            });
-        let sides = known.or(first).map(|report| report.convention);
+        let first = document.map(|document| &document.reports[0]);
+        let with_sides = first.filter(|first| {
+            matches!(first.format, Format::Csv | Format::Goniometer)
+                && first.convention != Convention::default()
+        });
+        let sides = known.or(with_sides).map(|report| report.convention);
+        let settings = known.or(first).map(|report| &report.read_settings);
+        let columns = self.columns.as_ref().map_or(&[][..], |pairs| &pairs.0);
         ReadOptions {
             format: self.format.or(known.map(|report| report.format)),
             theta_positive: self
@@ -158,8 +160,34 @@ impl Arguments {
                 .or(sides.map(|sides| sides.theta_positive)),
             phi_zero: self.phi_zero.or(sides.map(|sides| sides.phi_zero)),
             sample: self.sample.and_then(|count| usize::try_from(count).ok()),
-            columns: self.columns.clone().unwrap_or_default().0,
-            declarations: self.declare.clone(),
+            columns: settings.map_or_else(
+                || columns.to_vec(),
+                |settings| with_precedence(columns, &settings.columns),
+            ),
+            declarations: settings.map_or_else(
+                || self.declare.clone(),
+                |settings| with_precedence(&self.declare, &settings.declarations),
+            ),
         }
     }
+
+    /// Whether the files are joined: by the option, or as the first of them was in the earlier run.
+    pub(super) fn joins(&self, document: Option<&Document>) -> bool {
+        let report = document.map(|document| {
+            let file = self.files.first();
+            let known = file.and_then(|file| document.report_on(stream::shown(file)));
+            known.unwrap_or(&document.reports[0])
+        });
+        self.join || report.is_some_and(|report| !report.read_settings.joined.is_empty())
+    }
+}
+
+/// Pairs of which those that are given anew replace earlier ones of the same key.
+fn with_precedence(
+    given: &[(String, String)],
+    earlier: &[(String, String)],
+) -> Vec<(String, String)> {
+    let replaced = |(key, _): &&(String, String)| !given.iter().any(|(other, _)| other == key);
+    let kept = earlier.iter().filter(replaced);
+    kept.chain(given).cloned().collect()
 }

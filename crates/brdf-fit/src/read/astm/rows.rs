@@ -127,8 +127,8 @@ impl Rows {
             convention,
             format: Format::Astm,
             conversions,
-            incidence_class: None,
             readings,
+            ..Measurements::default()
         })
     }
 

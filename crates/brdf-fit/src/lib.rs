@@ -34,6 +34,7 @@
 //! measured trade-offs; `cli` (the default) enables all three and adds the programs `brdf` and
 //! `fit`.
 
+pub mod batch;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "export")]

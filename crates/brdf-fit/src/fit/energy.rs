@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
-use super::grid_search::{GridSearch, fixed_weights, solve_for};
+use super::grid_search::{GridSearch, fixed_weights};
 use crate::format::in_degrees;
 use crate::model::{Parameter, ReducedModel};
-use crate::objective::{Objective, ProfileSums};
+use crate::objective::{Objective, ProfileSums, solve_for};
 use crate::progress::{Cancelled, Progress};
 use crate::solver::SolverError;
 use crate::solver::observed::Observed;

@@ -10,7 +10,7 @@ use super::result::{GlobalCheck, Stage};
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::{Objective, ROUNDING};
 use crate::progress::{Observer, Phase, Progress};
-use crate::solver::polish;
+use crate::solver::descent::{Descent, Rows};
 
 /// A minimum counts as lower when E there is lower by more than this fraction: below it, two ways
 /// of summing the same minimum differ.
@@ -46,21 +46,39 @@ pub(super) fn check_globally(
     let progress = Progress::begin(observer, Phase::GlobalCheck)?;
     let search = GridSearch::new(objective, model, &progress)?;
     let profile = search.whole();
+    let descent = Descent { objective, model };
+    let (y, _) = objective.fixed_columns();
+    let lowest_from = |start| descent.from(start, Rows { y, factors: None }).0;
+    let is_lower =
+        |at: &ModelParameters, here| objective.error(at) < here * (1.0 - LOWER) - ROUNDING;
+    // In a flat valley, a minimiser of E ends where a step gains less than rounding. What a descent gains
+    // there is no other minimum.
     let mut parameters = last.parameters;
-    for minimum in profile.minima() {
-        // A stage that ended in this valley, at or below its grid point, has found its minimum.
+    let deepest = lowest_from(parameters);
+    if is_lower(&deepest, objective.error(&parameters)) {
+        parameters = deepest;
+    }
+    let own_valley = parameters;
+    let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
+    let minima = profile.minima();
+    for minimum in minima.iter().chain(&profile.ends_of_plains(&minima)) {
+        progress.advance()?;
+        // A stage that ended in this valley, at or below its grid point, has found its minimum. The steps
+        // of n and p are too long for this conclusion.
         let here = objective.error(&parameters);
-        if profile.is_next_to(&minimum, &parameters) && here <= objective.error(&minimum.parameters)
+        if !several_axes
+            && profile.is_next_to(minimum, &parameters)
+            && here <= objective.error(&minimum.parameters)
         {
             continue;
         }
-        let polished = polish(objective, minimum.parameters, model.free(), &progress)?;
-        if objective.error(&polished) < here * (1.0 - LOWER) - ROUNDING {
-            parameters = polished;
+        let lowest = lowest_from(minimum.parameters);
+        if is_lower(&lowest, here) {
+            parameters = lowest;
         }
     }
     let report = GlobalCheck {
-        lower_minimum_taken: parameters != last.parameters,
+        lower_minimum_taken: parameters != own_valley,
         stage2_e_percent: last.e_percent.own,
         profile: profile.along(Parameter::K1),
         profile_n: if model.frees(Parameter::N) {

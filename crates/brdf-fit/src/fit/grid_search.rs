@@ -9,31 +9,19 @@
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
-use crate::model::{K1_RANGE, Parameter, ReducedModel};
-use crate::objective::{Objective, ProfileSums};
+use crate::model::{PLAIN, Parameter, ReducedModel, axes, widest_of_plain};
+use crate::objective::{Objective, ProfileSums, solve_for};
 use crate::progress::{Cancelled, Progress};
-
-/// The number of steps in ln k1, of 0.25 each. As a function of ln k1 the paper's model has its
-/// nearest singularity at a distance of pi/2 in the complex plane, so that its profile has no much
-/// narrower features.
-const STEPS: u32 = 83;
-
-/// The refractive indices of the grid, denser at small values, where R0 changes most.
-const INDICES: [f64; 14] = [
-    1.0, 1.05, 1.12, 1.2, 1.3, 1.4, 1.5, 1.65, 1.85, 2.1, 2.5, 3.1, 4.2, 6.0,
-];
-
-/// The exponents of the grid, about equally spaced in their logarithm.
-const EXPONENTS: [f64; 12] = [
-    0.1, 0.16, 0.25, 0.4, 0.63, 1.0, 1.6, 2.5, 4.0, 6.3, 10.0, 16.0,
-];
 
 /// A search over n or p uses about this number of readings at most. The minima are refined with all
 /// readings.
 const SEARCHED_READINGS: usize = 2048;
 
+/// A difference of E, as a fraction of the readings' squares, that is rounding.
+const SAME: f64 = 1e-14;
+
 /// The largest number of minima of the grid that are refined.
-const MOST_MINIMA: usize = 4;
+const MOST_MINIMA: usize = 8;
 
 /// A point of the profile: the best weights at the other parameters, and E with them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -61,61 +49,6 @@ pub fn best_weights(
 /// The values of k2 and kD that are fixed.
 pub(crate) fn fixed_weights(model: ReducedModel) -> [Option<f64>; 2] {
     [Parameter::K2, Parameter::Kd].map(|weight| model.fixed(weight))
-}
-
-/// The best k2, kD and their E for normalised readings, where some weights are fixed: the free part
-/// describes the readings less the fixed part.
-pub(crate) fn solve_for(fixed: [Option<f64>; 2], sums: &ProfileSums) -> (f64, f64, f64) {
-    let &ProfileSums { uu, ua, uy, aa, ay } = sums;
-    match fixed {
-        [None, None] => solve(sums),
-        [Some(k2), None] => {
-            let left = ay - k2 * ua;
-            let kd = alone(left, aa);
-            (k2, kd, 1.0 - 2.0 * k2 * uy + k2 * k2 * uu - kd * left)
-        }
-        [None, Some(kd)] => {
-            let left = uy - kd * ua;
-            let k2 = alone(left, uu);
-            (k2, kd, 1.0 - 2.0 * kd * ay + kd * kd * aa - k2 * left)
-        }
-        [Some(k2), Some(kd)] => {
-            let squares = k2 * k2 * uu + 2.0 * k2 * kd * ua + kd * kd * aa;
-            (k2, kd, 1.0 - 2.0 * (k2 * uy + kd * ay) + squares)
-        }
-    }
-}
-
-/// The best weight of one part alone.
-fn alone(measured: f64, squared: f64) -> f64 {
-    if squared > 0.0 {
-        (measured / squared).max(0.0)
-    } else {
-        0.0
-    }
-}
-
-/// The best k2, kD and their E.
-///
-/// Either both weights are positive and satisfy the normal equations, or one is zero and the other
-/// is the best weight of its part alone.
-pub(crate) fn solve(sums: &ProfileSums) -> (f64, f64, f64) {
-    let &ProfileSums { uu, ua, uy, aa, ay } = sums;
-    let determinant = uu * aa - ua * ua;
-    // If the parts are collinear within rounding, one of them alone reaches the minimum.
-    if determinant > 1e-14 * uu * aa {
-        let k2 = (uy * aa - ay * ua) / determinant;
-        let kd = (ay * uu - uy * ua) / determinant;
-        if k2 >= 0.0 && kd >= 0.0 {
-            return (k2, kd, 1.0 - k2 * uy - kd * ay);
-        }
-    }
-    let (specular, diffuse) = (alone(uy, uu), alone(ay, aa));
-    if specular * uy > diffuse * ay {
-        (specular, 0.0, 1.0 - specular * uy)
-    } else {
-        (0.0, diffuse, 1.0 - diffuse * ay)
-    }
 }
 
 /// The scalar products at each point of the grid, for each fold of the incidences.
@@ -181,18 +114,7 @@ impl GridSearch {
         step: usize,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
-        let axis = |parameter, all: &[f64], step| {
-            if model.frees(parameter) {
-                all.iter().copied().step_by(step).collect()
-            } else {
-                vec![model.fixed(parameter).unwrap_or(objective.n())]
-            }
-        };
-        let axes = [
-            axis(Parameter::K1, &widths(), 1),
-            axis(Parameter::N, &INDICES, step),
-            axis(Parameter::P, &EXPONENTS, step),
-        ];
+        let axes = axes(model, objective.n(), objective.count(), step);
         let fresnel: Vec<Vec<f64>> = axes[1]
             .iter()
             .map(|&n| objective.fresnel_column(n))
@@ -325,10 +247,35 @@ impl Profile<'_> {
                 .all(|j| error < self.points[j].2 || (error == self.points[j].2 && i < j))
         };
         let indices = (0..self.points.len()).filter(|&i| is_minimum(i));
-        let mut minima: Vec<ProfilePoint> = indices.map(|i| self.point(i)).collect();
-        minima.sort_by(|a, b| a.error.total_cmp(&b.error));
+        let mut minima: Vec<usize> = indices.collect();
+        minima.sort_by(|a, b| self.points[*a].2.total_cmp(&self.points[*b].2));
+        // The minima of a plain are its rounding: they would take the place of others.
+        let mut is_first_of_plain = true;
+        minima.retain(|&i| !self.is_on_plain(i) || std::mem::take(&mut is_first_of_plain));
         minima.truncate(MOST_MINIMA);
-        minima
+        minima.into_iter().map(|i| self.point(i)).collect()
+    }
+
+    /// The wide ends of the plains of the [`minima`](Self::minima), where descents start as well.
+    pub(crate) fn ends_of_plains(&self, minima: &[ProfilePoint]) -> Vec<ProfilePoint> {
+        let counts = self.search.axes.each_ref().map(Vec::len);
+        let end = |minimum: &ProfilePoint| {
+            let place = (0..self.points.len()).find(|i| self.point(*i) == *minimum)?;
+            let is_plain = |i: usize| self.points[i].2 <= minimum.error * (1.0 + PLAIN);
+            let end = widest_of_plain(counts, place, is_plain);
+            (end != place).then(|| self.point(end))
+        };
+        minima.iter().filter_map(end).collect()
+    }
+
+    /// Whether E differs from that of all adjacent points by rounding only.
+    fn is_on_plain(&self, i: usize) -> bool {
+        let adjacent = self
+            .adjacent(self.indices(i))
+            .map(|indices| self.index(indices));
+        adjacent
+            .into_iter()
+            .all(|j| self.points[j].2 - self.points[i].2 <= SAME)
     }
 
     /// Whether parameters lie between the points that are adjacent to a point of the grid.
@@ -375,17 +322,6 @@ fn add(sum: &mut [f64; 3], products: &[f64; 3], times: f64) {
     }
 }
 
-/// The widths of the grid.
-fn widths() -> Vec<f64> {
-    let span = (K1_RANGE.1 / K1_RANGE.0).ln();
-    let width = |step| match step {
-        0 => K1_RANGE.0,
-        STEPS => K1_RANGE.1,
-        _ => K1_RANGE.0 * (span * f64::from(step) / f64::from(STEPS)).exp(),
-    };
-    (0..=STEPS).map(width).collect()
-}
-
 /// uu, ua and uy over some rows, with u the shape times the Fresnel factor, in independent running
 /// sums.
 fn lobe_products(shape: &[f64], fresnel: &[f64], a: &[f64], y: &[f64]) -> [f64; 3] {
@@ -415,7 +351,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::model::Model;
+    use crate::model::{K1_RANGE, Model};
     use crate::objective::weights::Weights;
     use crate::progress::{NoObserver, Phase};
     use crate::scan::Measurements;

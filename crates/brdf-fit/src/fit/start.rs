@@ -7,9 +7,9 @@ use brdf_core::fresnel::Dielectric;
 use brdf_core::{Geometry, Parameters, mirror_factor};
 use serde::{Deserialize, Serialize};
 
-use super::grid_search::{GridSearch, solve};
+use super::grid_search::GridSearch;
 use crate::model::{K1_RANGE, Model};
-use crate::objective::{Objective, ProfileSums};
+use crate::objective::{Objective, ProfileSums, solve};
 use crate::progress::{Cancelled, Progress};
 use crate::scan::{Incidence, Measurement};
 

@@ -6,8 +6,9 @@ use brdf_core::ModelParameters;
 use super::estimate::{Estimate, Interval, Knowledge};
 use super::uncertainty::Width;
 use crate::fit::Solution;
-use crate::fit::grid_search::{ProfilePoint, fixed_weights, solve_for};
+use crate::fit::grid_search::{ProfilePoint, fixed_weights};
 use crate::model::{K1_RANGE, Parameter};
+use crate::objective::solve_for;
 use crate::progress::{Cancelled, Progress};
 use crate::solver::{polish, unless_cancelled};
 

@@ -11,15 +11,15 @@ use super::rows::{Angles, Objective};
 use crate::model::Parameter;
 
 /// The number of rows that are evaluated together: their columns stay in the nearest cache.
-pub(super) const BLOCK: usize = 32;
+pub(crate) const BLOCK: usize = 32;
 
 /// The columns y, a, u of a block of rows, and the derivatives of u with respect to k1, n and p.
 /// Rows beyond the last one are zero.
-pub(super) struct Block {
-    pub(super) y: [f64; BLOCK],
-    pub(super) a: [f64; BLOCK],
-    pub(super) u: [f64; BLOCK],
-    pub(super) by: [[f64; BLOCK]; 3],
+pub(crate) struct Block {
+    pub(crate) y: [f64; BLOCK],
+    pub(crate) a: [f64; BLOCK],
+    pub(crate) u: [f64; BLOCK],
+    pub(crate) by: [[f64; BLOCK]; 3],
 }
 
 impl Block {
@@ -67,9 +67,18 @@ impl Objective {
         }
     }
 
+    /// The column u at the given k1, n and p.
+    pub(crate) fn lobe_column(&self, at: &ModelParameters) -> Vec<f64> {
+        let mut column = Vec::with_capacity(self.len());
+        self.for_blocks(at, [false; 3], 0..self.len(), |rows, block| {
+            column.extend_from_slice(&block.u[..rows.len()]);
+        });
+        column
+    }
+
     /// Evaluates u and the requested derivatives with respect to k1, n and p, block by block, and
     /// passes each block to `take`. The terms of the family are chosen here, outside the loop.
-    pub(super) fn for_blocks(
+    pub(crate) fn for_blocks(
         &self,
         at: &ModelParameters,
         derivatives: [bool; 3],
@@ -240,4 +249,18 @@ pub(super) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
         }
     }
     (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The scalar product of columns of any length, in eight independent running sums.
+pub(crate) fn dot_of(x: &[f64], y: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
+    for (x, y) in x.iter().zip(y) {
+        for lane in 0..LANES {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    let rest: f64 = x_rest.iter().zip(y_rest).map(|(x, y)| x * y).sum();
+    sums.iter().sum::<f64>() + rest
 }

@@ -4,16 +4,21 @@
 //! `evaluation` computes E, residuals and derivatives from them. `subset` and `condensed` make
 //! objectives over fewer rows.
 
+mod best_weights;
 mod block;
 mod condensed;
 mod error;
 mod evaluation;
+mod lobe;
 mod rows;
 mod subset;
 pub(crate) mod weights;
 
+pub(crate) use best_weights::{solve, solve_for};
+pub(crate) use block::{BLOCK, dot_of};
 pub use error::ObjectiveError;
 pub use evaluation::NormalEquations;
 pub(crate) use evaluation::{ProfileSums, ROUNDING};
+pub(crate) use lobe::LobeRows;
 pub(crate) use rows::Segment;
 pub use rows::{IncidenceError, MOST_FOLDS, Objective};

@@ -1,5 +1,6 @@
 //! The two minimisers, as argmin solvers that keep the parameters within their bounds.
 
+pub(crate) mod descent;
 mod error;
 pub(crate) mod levenberg_marquardt;
 pub(crate) mod nelder_mead;

@@ -1,0 +1,512 @@
+//! The fits of many scans with a plan.
+
+use std::f64;
+use std::ops::ControlFlow;
+
+use brdf_core::ModelParameters;
+use rayon::prelude::*;
+
+use super::exact::{best_weights, standard_errors};
+use super::own::OwnScan;
+use super::plan::{BatchError, BatchPlan};
+use super::result::{BatchFit, Row, Status};
+use super::search::{BLOCK, Found, Search};
+use crate::model::{K1_RANGE, Parameter};
+use crate::solver::descent::{Descent, Rows};
+
+/// The number of scans that a thread takes at a time.
+const CHUNK: usize = 512;
+
+/// The number of scans between two calls of the observer.
+const REPORTED: usize = 1 << 16;
+
+/// The largest weighted reading, in 1/sr, for which squares stay well within the range of `f64`.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
+
+/// Readings of many scans, `f64` or `f32`, as they lie in memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Scans<'a, T> {
+    values: &'a [T],
+    count: usize,
+    readings: usize,
+    scan_stride: usize,
+    reading_stride: usize,
+}
+
+impl<'a, T> Scans<'a, T> {
+    /// Scans whose readings are adjacent, one scan after the other.
+    ///
+    /// # Errors
+    ///
+    /// The number of values is not a multiple of the number of readings.
+    pub fn new(values: &'a [T], readings: usize) -> Result<Self, BatchError> {
+        let scans = values.len().checked_div(readings).unwrap_or(0);
+        if scans * readings != values.len() {
+            return Err(BatchError::Length {
+                found: values.len(),
+                expected: (scans + 1) * readings,
+            });
+        }
+        Self::strided(values, [scans, readings], [readings, 1])
+    }
+
+    /// Reading j of scan i is at i times the first stride plus j times the second.
+    ///
+    /// # Errors
+    ///
+    /// There are fewer values than the shape needs.
+    pub fn strided(
+        values: &'a [T],
+        [scans, readings]: [usize; 2],
+        [scan_stride, reading_stride]: [usize; 2],
+    ) -> Result<Self, BatchError> {
+        let last = |count: usize, stride: usize| count.saturating_sub(1).saturating_mul(stride);
+        let expected = if scans == 0 || readings == 0 {
+            0
+        } else {
+            last(scans, scan_stride)
+                .saturating_add(last(readings, reading_stride))
+                .saturating_add(1)
+        };
+        if values.len() < expected {
+            return Err(BatchError::Length {
+                found: values.len(),
+                expected,
+            });
+        }
+        Ok(Self {
+            values,
+            count: scans,
+            readings,
+            scan_stride,
+            reading_stride,
+        })
+    }
+
+    /// The number of scans.
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there are no scans.
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+}
+
+impl<T: Copy + Into<f64>> Scans<'_, T> {
+    /// Copies the readings of a scan.
+    #[inline]
+    fn load(&self, scan: usize, to: &mut [f64]) {
+        let start = scan * self.scan_stride;
+        if self.reading_stride == 1 {
+            let values = &self.values[start..start + to.len()];
+            for (to, value) in to.iter_mut().zip(values) {
+                *to = (*value).into();
+            }
+        } else {
+            for (j, to) in to.iter_mut().enumerate() {
+                *to = self.values[start + j * self.reading_stride].into();
+            }
+        }
+    }
+}
+
+/// Receives the progress of many fits, and may cancel them.
+pub trait BatchObserver {
+    /// `done` of `total` scans are fitted. [`ControlFlow::Break`] ends the run.
+    fn progress(&mut self, done: usize, total: usize) -> ControlFlow<()>;
+}
+
+impl<F: FnMut(usize, usize) -> ControlFlow<()>> BatchObserver for F {
+    fn progress(&mut self, done: usize, total: usize) -> ControlFlow<()> {
+        self(done, total)
+    }
+}
+
+/// How a run is made.
+pub struct BatchRun<'a, T> {
+    pub(super) plan: &'a BatchPlan,
+    pub(super) scans: Scans<'a, T>,
+    pub(super) weights: Option<Scans<'a, T>>,
+    pub(super) errors: bool,
+    pub(super) one_thread: bool,
+}
+
+impl BatchPlan {
+    /// Fits scans on the threads of the current rayon pool.
+    ///
+    /// NaN stands for a reading that was not taken. A scan that cannot be fitted is no error: its
+    /// [`Status`] says why, and its columns are NaN.
+    ///
+    /// # Errors
+    ///
+    /// The number of readings is not that of the plan.
+    pub fn fit_many<T: Copy + Into<f64> + Sync>(
+        &self,
+        scans: Scans<'_, T>,
+    ) -> Result<BatchFit, BatchError> {
+        self.run(scans).fit()
+    }
+
+    /// A run with further settings.
+    pub fn run<'a, T: Copy + Into<f64> + Sync>(&'a self, scans: Scans<'a, T>) -> BatchRun<'a, T> {
+        BatchRun {
+            plan: self,
+            scans,
+            weights: None,
+            errors: false,
+            one_thread: false,
+        }
+    }
+}
+
+impl<'a, T: Copy + Into<f64> + Sync> BatchRun<'a, T> {
+    /// Weights of the readings of each scan, beside those of the plan: numbers of at least 0.
+    #[must_use]
+    pub fn weights(mut self, weights: Scans<'a, T>) -> Self {
+        self.weights = Some(weights);
+        self
+    }
+
+    /// Computes the standard errors for constant noise as well.
+    #[must_use]
+    pub fn constant_noise_errors(mut self) -> Self {
+        self.errors = true;
+        self
+    }
+
+    /// Fits all scans on the calling thread.
+    #[must_use]
+    pub fn on_one_thread(mut self) -> Self {
+        self.one_thread = true;
+        self
+    }
+
+    /// Fits the scans.
+    ///
+    /// # Errors
+    ///
+    /// The number of readings is not that of the plan, or weights are not valid.
+    pub fn fit(self) -> Result<BatchFit, BatchError> {
+        self.fit_observed(&mut |_, _| ControlFlow::Continue(()))
+    }
+
+    /// Fits the scans and reports the progress.
+    ///
+    /// # Errors
+    ///
+    /// As [`fit`](Self::fit); and the observer cancels.
+    pub fn fit_observed(self, observer: &mut dyn BatchObserver) -> Result<BatchFit, BatchError> {
+        self.check()?;
+        let total = self.scans.len();
+        let mut fit = BatchFit::with_capacity(total, self.errors);
+        for start in (0..total).step_by(REPORTED) {
+            let end = (start + REPORTED).min(total);
+            let chunks: Vec<usize> = (start..end).step_by(CHUNK).collect();
+            let one = |from: &usize| self.fit_chunk(*from, (from + CHUNK).min(end));
+            let rows: Vec<Vec<Row>> = if self.one_thread {
+                chunks.iter().map(one).collect::<Result<_, _>>()?
+            } else {
+                chunks.par_iter().map(one).collect::<Result<_, _>>()?
+            };
+            rows.iter().flatten().for_each(|row| fit.push(row));
+            if observer.progress(end, total).is_break() {
+                return Err(BatchError::Cancelled);
+            }
+        }
+        Ok(fit)
+    }
+
+    fn check(&self) -> Result<(), BatchError> {
+        let expected = self.plan.readings();
+        let given = [Some(&self.scans), self.weights.as_ref()];
+        for scans in given.into_iter().flatten() {
+            if scans.readings != expected && !scans.is_empty() {
+                return Err(BatchError::Readings {
+                    found: scans.readings,
+                    expected,
+                });
+            }
+        }
+        match &self.weights {
+            Some(weights) if weights.len() != self.scans.len() => Err(BatchError::WeightRows {
+                found: weights.len(),
+                expected: self.scans.len(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn fit_chunk(&self, start: usize, end: usize) -> Result<Vec<Row>, BatchError> {
+        let mut chunk = Chunk::new(self);
+        let mut first = start;
+        while first < end {
+            let last = (first + BLOCK).min(end);
+            chunk.fit_block(first..last)?;
+            first = last;
+        }
+        chunk.fit_own();
+        Ok(chunk.rows)
+    }
+}
+
+/// How a scan of a block is fitted.
+enum Kind {
+    /// By the tables of the plan. The sum of the squares of its weighted readings.
+    Shared(f64),
+    /// By its own scalar products, or not at all.
+    Other,
+}
+
+/// The fits of some scans on one thread.
+struct Chunk<'a, T> {
+    run: &'a BatchRun<'a, T>,
+    search: Option<Search<'a>>,
+    /// The readings of a block, one column for each scan.
+    readings: Vec<f64>,
+    weights: Vec<f64>,
+    /// y of a scan.
+    y: Vec<f64>,
+    lobe: Vec<f64>,
+    found: Vec<Found>,
+    rows: Vec<Row>,
+    /// The scans with gaps or with their own weights: the place of the row, the length of y, the number
+    /// of readings.
+    own: Vec<(usize, f64, usize)>,
+    own_scans: Vec<OwnScan>,
+}
+
+impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
+    fn new(run: &'a BatchRun<'a, T>) -> Self {
+        let plan = run.plan;
+        Self {
+            run,
+            search: plan
+                .table
+                .as_ref()
+                .filter(|_| plan.has_lobe())
+                .map(Search::new),
+            readings: vec![0.0; BLOCK * plan.readings],
+            weights: Vec::new(),
+            y: vec![0.0; plan.factors.len()],
+            lobe: Vec::with_capacity(plan.factors.len()),
+            found: Vec::new(),
+            rows: Vec::with_capacity(CHUNK),
+            own: Vec::new(),
+            own_scans: Vec::new(),
+        }
+    }
+
+    fn fit_block(&mut self, scans: std::ops::Range<usize>) -> Result<(), BatchError> {
+        let kinds = scans
+            .clone()
+            .enumerate()
+            .map(|(i, scan)| self.take(i, scan))
+            .collect::<Result<Vec<Kind>, _>>()?;
+        // The scans beyond the last one are zero, so that each block has the same sums.
+        self.readings[scans.len() * self.run.plan.readings..].fill(0.0);
+        if let Some(search) = &mut self.search {
+            search.project(&self.readings);
+        }
+        let first = self.rows.len() - scans.len();
+        for (i, kind) in kinds.into_iter().enumerate() {
+            if let Kind::Shared(squares) = kind {
+                self.rows[first + i] = self.fit_shared(i, squares);
+            }
+        }
+        Ok(())
+    }
+
+    /// Loads scan `scan` as column `i` of the block. A scan that the tables do not describe is kept for
+    /// later, or gets its row at once.
+    fn take(&mut self, i: usize, scan: usize) -> Result<Kind, BatchError> {
+        let (run, plan) = (self.run, self.run.plan);
+        let column = i * plan.readings..(i + 1) * plan.readings;
+        run.scans.load(scan, &mut self.readings[column.clone()]);
+        let readings = &mut self.readings[column];
+        plan.weighted(readings, 1.0, &mut self.y);
+        let squares = crate::objective::dot_of(&self.y, &self.y);
+        let shared = run.weights.is_none() && (self.search.is_some() || !plan.has_lobe());
+        let sizes = SIZES.start().powi(2)..=SIZES.end().powi(2);
+        if shared && sizes.contains(&squares) {
+            let used = plan.objective.count() - plan.objective.zero_weight();
+            if used <= plan.free() {
+                let used = u32::try_from(used).unwrap_or(u32::MAX);
+                self.rows
+                    .push(Row::without_fit(Status::TooFewReadings, used));
+                return Ok(Kind::Other);
+            }
+            self.rows.push(Row::without_fit(Status::Fitted, 0));
+            return Ok(Kind::Shared(squares));
+        }
+        self.take_own(i, scan)?;
+        Ok(Kind::Other)
+    }
+
+    /// Keeps a scan with gaps or with its own weights, or gives it the row of one that is not fitted.
+    fn take_own(&mut self, i: usize, scan: usize) -> Result<(), BatchError> {
+        let (run, plan) = (self.run, self.run.plan);
+        let readings = &mut self.readings[i * plan.readings..(i + 1) * plan.readings];
+        self.weights.clear();
+        self.weights.resize(plan.readings, 1.0);
+        if let Some(weights) = &run.weights {
+            weights.load(scan, &mut self.weights);
+            let wrong = |(_, weight): &(usize, &f64)| !(**weight >= 0.0 && weight.is_finite());
+            if let Some((reading, &weight)) = self.weights.iter().enumerate().find(wrong) {
+                return Err(BatchError::Weight {
+                    scan,
+                    reading,
+                    weight,
+                });
+            }
+        }
+        let mut factors = Vec::with_capacity(plan.factors.len());
+        let mut y = Vec::with_capacity(plan.factors.len());
+        let (mut largest, mut used) = (0.0_f64, 0);
+        for (factor, &reading) in plan.factors.iter().zip(plan.objective.readings()) {
+            let (value, weight) = (readings[reading], self.weights[reading]);
+            let taken = !value.is_nan() && weight > 0.0 && *factor > 0.0;
+            let own = if taken { weight.sqrt() } else { 0.0 };
+            factors.push(own);
+            y.push(if taken { own * factor * value } else { 0.0 });
+            used += usize::from(taken);
+            largest = largest.max(y[y.len() - 1].abs());
+        }
+        // The columns of the block stay free of NaN.
+        readings.fill(0.0);
+        let status = match largest {
+            _ if used <= plan.free() => Some(Status::TooFewReadings),
+            0.0 => Some(Status::AllZero),
+            largest if !SIZES.contains(&largest) => Some(Status::OutOfRange),
+            _ => None,
+        };
+        let used_count = u32::try_from(used).unwrap_or(u32::MAX);
+        let row = Row::without_fit(status.unwrap_or_default(), used_count);
+        if status.is_none() {
+            let length = largest * super::basis::norm(&scaled(&y, 1.0 / largest));
+            for y in &mut y {
+                *y /= length;
+            }
+            self.own.push((self.rows.len(), length, used));
+            self.own_scans.push(OwnScan { y, factors });
+        }
+        self.rows.push(row);
+        Ok(())
+    }
+
+    /// Fits scan `i` of the block by the tables of the plan.
+    fn fit_shared(&mut self, i: usize, squares: f64) -> Row {
+        let plan = self.run.plan;
+        let readings = &self.readings[i * plan.readings..(i + 1) * plan.readings];
+        let length = squares.sqrt();
+        plan.weighted(readings, 1.0 / length, &mut self.y);
+        match &mut self.search {
+            Some(search) => search.optima(i, squares, &mut self.found),
+            None => self.found = vec![Found::without_lobe(plan.objective.n())],
+        }
+        let rows = Rows {
+            y: &self.y,
+            factors: None,
+        };
+        let descent = Descent {
+            objective: &plan.objective,
+            model: plan.model,
+        };
+        let mut best: Option<(ModelParameters, f64)> = None;
+        for found in &self.found {
+            let [k1, n, p] = found.at;
+            let start = ModelParameters {
+                k2: 0.0,
+                kd: 0.0,
+                k1,
+                n,
+                p,
+            };
+            let ends_in_minima = plan.table.as_ref().is_none_or(|table| table.ends_in_minima);
+            let at = if ends_in_minima {
+                start
+            } else {
+                descent.from(start, rows).0
+            };
+            let here = best_weights(plan, at, rows, &mut self.lobe);
+            if best.is_none_or(|best| here.1 < best.1) {
+                best = Some(here);
+            }
+        }
+        let used = plan.objective.count() - plan.objective.zero_weight();
+        match best {
+            Some(best) => self.row(best, length, used, rows),
+            None => Row::without_fit(Status::OutOfRange, 0),
+        }
+    }
+
+    /// Fits the scans with gaps or with their own weights.
+    fn fit_own(&mut self) {
+        let plan = self.run.plan;
+        let descent = Descent {
+            objective: &plan.objective,
+            model: plan.model,
+        };
+        let scans = std::mem::take(&mut self.own_scans);
+        let places = std::mem::take(&mut self.own);
+        for (scans, places) in scans
+            .chunks(super::own::BLOCK)
+            .zip(places.chunks(super::own::BLOCK))
+        {
+            let optima = plan.own().optima(&descent, scans);
+            for ((scan, at), &(place, length, used)) in scans.iter().zip(optima).zip(places) {
+                let rows = Rows {
+                    y: &scan.y,
+                    factors: Some(&scan.factors),
+                };
+                let mut lobe = std::mem::take(&mut self.lobe);
+                let best = best_weights(plan, at, rows, &mut lobe);
+                self.lobe = lobe;
+                self.rows[place] = self.row(best, length, used, rows);
+            }
+        }
+    }
+
+    /// The row of the best parameters of a scan, of which y is divided by `length`.
+    fn row(&self, best: (ModelParameters, f64), length: f64, used: usize, rows: Rows<'_>) -> Row {
+        let plan = self.run.plan;
+        let (mut at, error) = best;
+        let frees = |parameter| plan.model.frees(parameter);
+        let status = if frees(Parameter::K2) && at.k2 == 0.0 {
+            Status::NoLobe
+        } else if frees(Parameter::K1) && (at.k1 <= K1_RANGE.0 || at.k1 >= K1_RANGE.1) {
+            Status::WidthAtEnd
+        } else if frees(Parameter::Kd) && at.kd == 0.0 {
+            Status::NoDiffuse
+        } else {
+            Status::Fitted
+        };
+        let mut errors = [f64::NAN; 5];
+        if self.run.errors {
+            errors = standard_errors(&plan.objective, plan.model, &at, error, used, rows);
+            for error in &mut errors[..2] {
+                *error *= length;
+            }
+        }
+        at.k2 *= length;
+        at.kd *= length;
+        if status == Status::NoLobe {
+            let lost = [Parameter::K1, Parameter::N, Parameter::P].into_iter();
+            lost.filter(|parameter| frees(*parameter))
+                .for_each(|parameter| parameter.set(&mut at, f64::NAN));
+        }
+        let readings = u32::try_from(used).unwrap_or(u32::MAX);
+        Row {
+            at,
+            error,
+            readings,
+            status,
+            errors,
+        }
+    }
+}
+
+fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
+    values.iter().map(|value| value * factor).collect()
+}

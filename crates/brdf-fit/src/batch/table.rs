@@ -1,0 +1,276 @@
+//! The columns of a model on the grid of its widths, indices and exponents, in a basis that all scans of
+//! a plan share.
+
+use brdf_core::ModelParameters;
+use nalgebra::DMatrix;
+
+use super::basis::{Basis, norm, remove};
+use super::cell::Cell;
+use crate::model::{Parameter, ReducedModel, axes};
+use crate::objective::{Objective, dot_of as dot};
+
+/// What the basis leaves of a column where the search ends in it: rounding in E.
+const FINE: f64 = 1e-12;
+
+/// What the basis leaves of a column where the search only chooses the starts of descents.
+const COARSE: f64 = 1e-4;
+
+/// Fewer rows than this are represented finely: it costs nothing, and a model may nearly interpolate
+/// them.
+const FEW_ROWS: usize = 32;
+
+/// The error of a cell up to which its maxima are those of the columns.
+const INTERPOLATED: f64 = 1e-9;
+
+/// Columns that represent those between the widths of the grid, for each step.
+const SAMPLES: usize = 4;
+
+/// A lobe below this fraction of the diffuse column at all readings is none: its squares underflow.
+const TINY: f64 = 1e-150;
+
+/// The smallest angle between a lobe's column and the diffuse one at which they are told apart.
+const COLLINEAR: f64 = 1e-7;
+
+/// The unit column of a lobe in the plane that it spans with the diffuse column a' of unit length:
+/// cos p a' + sin p v, with v orthogonal to a'. A model without a diffuse part has p = pi/2.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Angle {
+    pub(super) cos: f64,
+    pub(super) sin: f64,
+}
+
+impl Angle {
+    /// The part of the readings' squares that the model explains with the best weights: `diffuse` is the
+    /// scalar product of the readings and a', `beside` that with v.
+    #[inline]
+    pub(super) fn explained(self, diffuse: f64, beside: f64) -> f64 {
+        let Self { cos, sin } = self;
+        // Comparisons rather than `max`: they become vector code.
+        let positive = |x: f64| if x > 0.0 { x } else { 0.0 };
+        let lobe = positive(diffuse * cos + beside * sin);
+        let without_lobe = positive(diffuse);
+        let both = diffuse * diffuse + beside * beside;
+        let explained = if diffuse * sin < beside * cos {
+            lobe * lobe
+        } else {
+            both
+        };
+        if beside > 0.0 {
+            explained
+        } else {
+            without_lobe * without_lobe
+        }
+    }
+}
+
+/// The tables of a plan.
+#[derive(Debug, Clone)]
+pub(super) struct Table {
+    /// The values of k1, n and p on the axes of the grid; n varies fastest, p slowest.
+    pub(super) axes: [Vec<f64>; 3],
+    /// The basis, times the factor of each reading, in the order of the readings: one row for each
+    /// column of the basis. Where the model has a diffuse part, the first one is a'.
+    pub(super) projection: DMatrix<f64>,
+    pub(super) has_diffuse: bool,
+    /// The angle of each point of the grid.
+    pub(super) angles: Vec<Angle>,
+    /// v of each point, one row for each.
+    pub(super) directions: DMatrix<f64>,
+    /// The columns around each point, where k1 alone is searched.
+    pub(super) cells: Vec<Cell>,
+    /// Whether the optima of the search are those of E within rounding: not where several parameters are
+    /// searched, nor where the cells are not accurate.
+    pub(super) ends_in_minima: bool,
+    /// The largest second derivative of v and of the unit column of the lobe along ln k1, in steps.
+    pub(super) curvature: f64,
+}
+
+/// Evaluates unit columns of lobes.
+pub(super) struct Lobes<'a> {
+    objective: &'a Objective,
+    diffuse: Option<Vec<f64>>,
+}
+
+impl Lobes<'_> {
+    /// The column of a lobe.
+    fn column(&self, k1: f64, n: f64, p: f64) -> Vec<f64> {
+        let at = ModelParameters {
+            k2: 1.0,
+            kd: 0.0,
+            k1,
+            n,
+            p,
+        };
+        self.objective.lobe_column(&at)
+    }
+
+    /// The column of unit length.
+    fn unit(&self, k1: f64, n: f64, p: f64) -> Vec<f64> {
+        let mut column = self.column(k1, n, p);
+        // The column of a narrow lobe without a reading at its peak is tiny, and its square underflows.
+        let largest = column.iter().fold(0.0_f64, |max, u| max.max(*u));
+        if largest
+            < TINY
+                * self
+                    .objective
+                    .fixed_columns()
+                    .1
+                    .iter()
+                    .copied()
+                    .fold(0.0, f64::max)
+        {
+            column.fill(0.0);
+        } else if largest > 0.0 {
+            for u in &mut column {
+                *u /= largest;
+            }
+            let length = norm(&column);
+            for u in &mut column {
+                *u /= length;
+            }
+        }
+        column
+    }
+
+    /// The angle and v of a unit column; `None` where it is parallel to the diffuse column.
+    pub(super) fn beside(&self, k1: f64, n: f64, p: f64) -> Option<(Angle, Vec<f64>)> {
+        let mut column = self.unit(k1, n, p);
+        let Some(diffuse) = &self.diffuse else {
+            return Some((Angle { cos: 0.0, sin: 1.0 }, column));
+        };
+        if column.iter().all(|u| *u == 0.0) {
+            return Some((Angle { cos: 0.0, sin: 1.0 }, column));
+        }
+        let cos = dot(&column, diffuse);
+        remove(&mut column, diffuse);
+        remove(&mut column, diffuse);
+        let sin = norm(&column);
+        if sin < COLLINEAR {
+            return None;
+        }
+        for v in &mut column {
+            *v /= sin;
+        }
+        Some((Angle { cos, sin }, column))
+    }
+}
+
+impl Table {
+    /// The tables of a model, whose rows have the given factors on their readings.
+    ///
+    /// `None` where a lobe of the model cannot be told from its diffuse part.
+    pub(super) fn new(
+        objective: &Objective,
+        model: ReducedModel,
+        factors: &[f64],
+        readings: usize,
+    ) -> Option<Self> {
+        let (_, a) = objective.fixed_columns();
+        let has_diffuse = model.frees(Parameter::Kd);
+        let length = norm(a);
+        let lobes = Lobes {
+            objective,
+            diffuse: has_diffuse.then(|| a.iter().map(|a| a / length).collect()),
+        };
+        let axes = if model.frees(Parameter::K1) {
+            axes(model, objective.n(), objective.count(), 1)
+        } else {
+            [Vec::new(), Vec::new(), Vec::new()]
+        };
+        let along_k1 = axes[1].len() <= 1 && axes[2].len() <= 1;
+        let mut angles = Vec::new();
+        let mut points = Vec::new();
+        for &p in &axes[2] {
+            for &k1 in &axes[0] {
+                for &n in &axes[1] {
+                    let (angle, direction) = lobes.beside(k1, n, p)?;
+                    angles.push(angle);
+                    points.push(direction);
+                }
+            }
+        }
+        let basis = if along_k1 {
+            let between = between(&axes[0]);
+            let at = |k1: &f64| Some(lobes.beside(*k1, axes[1][0], axes[2][0])?.1);
+            let mut represented: Vec<Vec<f64>> = between.iter().map(at).collect::<Option<_>>()?;
+            represented.extend_from_slice(&points);
+            Basis::of(lobes.diffuse.as_deref(), &represented, FINE)
+        } else {
+            let few = objective.len() < FEW_ROWS;
+            Basis::of(
+                lobes.diffuse.as_deref(),
+                &points,
+                if few { FINE } else { COARSE },
+            )
+        };
+        let coordinates: Vec<Vec<f64>> = points.iter().map(|v| basis.coordinates(v)).collect();
+        let directions = DMatrix::from_fn(points.len(), basis.len(), |i, k| coordinates[i][k]);
+        let at = |k1: f64| {
+            let (angle, v) = lobes.beside(k1, axes[1][0], axes[2][0])?;
+            Some((angle, basis.coordinates(&v)))
+        };
+        let cells = (0..axes[0].len())
+            .filter(|_| along_k1)
+            .map(|i| Cell::around(&axes[0], i, at));
+        let cells = cells.collect::<Option<Vec<_>>>()?;
+        let error = cells.iter().map(|cell| cell.error).fold(0.0, f64::max);
+        let mut projection = DMatrix::zeros(basis.len(), readings);
+        for (k, column) in basis.columns.iter().enumerate() {
+            for ((q, factor), &reading) in column.iter().zip(factors).zip(objective.readings()) {
+                projection[(k, reading)] = q * factor;
+            }
+        }
+        Some(Self {
+            axes,
+            projection,
+            has_diffuse,
+            angles,
+            directions,
+            ends_in_minima: along_k1 && error < INTERPOLATED,
+            curvature: cells.iter().map(Cell::curvature).fold(0.0, f64::max),
+            cells,
+        })
+    }
+
+    /// The number of columns of the basis.
+    pub(super) fn dimension(&self) -> usize {
+        self.projection.nrows()
+    }
+
+    /// The widths, indices and exponents of a point.
+    pub(super) fn at(&self, i: usize) -> [f64; 3] {
+        let [k1, n, p] = self.indices(i);
+        [self.axes[0][k1], self.axes[1][n], self.axes[2][p]]
+    }
+
+    /// The indices of a point on the axes.
+    pub(super) fn indices(&self, i: usize) -> [usize; 3] {
+        let [k1, n, _] = self.axes.each_ref().map(Vec::len);
+        [i / n % k1, i % n, i / n / k1]
+    }
+
+    /// The adjacent points along each axis.
+    pub(super) fn adjacent(&self, i: usize) -> impl Iterator<Item = usize> {
+        adjacent(self.axes.each_ref().map(Vec::len), i)
+    }
+}
+
+/// The points of a grid that are adjacent to a point along each axis, for the numbers of values of k1, n
+/// and p.
+pub(super) fn adjacent([k1, n, p]: [usize; 3], i: usize) -> impl Iterator<Item = usize> {
+    let of_axes = [(i / n % k1, k1, n), (i % n, n, 1), (i / n / k1, p, n * k1)];
+    of_axes.into_iter().flat_map(move |(index, count, stride)| {
+        let below = (index > 0).then(|| i - stride);
+        let above = (index + 1 < count).then(|| i + stride);
+        below.into_iter().chain(above)
+    })
+}
+
+/// Widths between those of the grid, at equal steps of their logarithm.
+fn between(widths: &[f64]) -> Vec<f64> {
+    let pairs = widths.windows(2).flat_map(|pair| {
+        let step = (pair[1] / pair[0]).ln() / SAMPLES as f64;
+        (1..SAMPLES).map(move |i| pair[0] * (step * i as f64).exp())
+    });
+    pairs.collect()
+}

@@ -1,0 +1,74 @@
+//! The grid of the nonlinear parameters on which searches for the global optimum begin.
+
+use super::{K1_RANGE, Parameter, ReducedModel};
+
+/// The number of steps in ln k1, of 0.25 each, for scans of many readings. As a function of ln k1 the
+/// paper's model has its nearest singularity at a distance of pi/2 in the complex plane, so that its
+/// columns have no much narrower features.
+const STEPS: u32 = 83;
+
+/// Below this number of readings, the steps in ln k1 are a quarter as long: few readings are nearly
+/// interpolated, and the small rest of E has narrower features than the columns.
+const FEW_READINGS: usize = 24;
+
+/// The refractive indices of the grid, denser at small values, where R0 changes most.
+const INDICES: [f64; 14] = [
+    1.0, 1.05, 1.12, 1.2, 1.3, 1.4, 1.5, 1.65, 1.85, 2.1, 2.5, 3.1, 4.2, 6.0,
+];
+
+/// The exponents of the grid, about equally spaced in their logarithm.
+const EXPONENTS: [f64; 12] = [
+    0.1, 0.16, 0.25, 0.4, 0.63, 1.0, 1.6, 2.5, 4.0, 6.3, 10.0, 16.0,
+];
+
+/// The values of k1, n and p on the axes of the grid of a model, for a number of readings. A parameter
+/// that is not free has one value: the fixed one, or for the refractive index `n`. Of n and p, one of
+/// `stride` values is taken.
+pub(crate) fn axes(model: ReducedModel, n: f64, readings: usize, stride: usize) -> [Vec<f64>; 3] {
+    let axis = |parameter, all: &[f64], stride| {
+        if model.frees(parameter) {
+            all.iter().copied().step_by(stride).collect()
+        } else {
+            vec![model.fixed(parameter).unwrap_or(n)]
+        }
+    };
+    [
+        axis(Parameter::K1, &widths(readings), 1),
+        axis(Parameter::N, &INDICES, stride),
+        axis(Parameter::P, &EXPONENTS, stride),
+    ]
+}
+
+/// The widths of the grid, from the lower to the upper end of their range.
+pub(crate) fn widths(readings: usize) -> Vec<f64> {
+    let steps = if readings < FEW_READINGS {
+        4 * STEPS
+    } else {
+        STEPS
+    };
+    let span = (K1_RANGE.1 / K1_RANGE.0).ln();
+    let width = |step| match step {
+        0 => K1_RANGE.0,
+        step if step == steps => K1_RANGE.1,
+        _ => K1_RANGE.0 * (span * f64::from(step) / f64::from(steps)).exp(),
+    };
+    (0..=steps).map(width).collect()
+}
+
+/// On a plain, E differs from its lowest value by less than this fraction.
+pub(crate) const PLAIN: f64 = 1e-3;
+
+/// The widest point, along k1 from a point of the grid, up to which all points belong to its plain. The
+/// numbers of values are those of k1, n and p; n varies fastest.
+///
+/// Far below the distance of the readings, the width of a lobe has no effect, and no slope leads out of
+/// there: descents start at the wide end.
+pub(crate) fn widest_of_plain(
+    [k1, n, _]: [usize; 3],
+    start: usize,
+    is_plain: impl Fn(usize) -> bool,
+) -> usize {
+    let steps = k1 - 1 - start / n % k1;
+    let wider = (1..=steps).map(|step| start + step * n);
+    wider.take_while(|i| is_plain(*i)).last().unwrap_or(start)
+}

@@ -9,6 +9,9 @@
 //! assert_eq!(in_degrees(41.4_f64.to_radians()), 41.4);
 //! ```
 
+use std::collections::HashSet;
+use std::hash::Hash;
+
 /// A text that is not a value of the expected kind, as a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
@@ -42,6 +45,34 @@ pub fn printable(text: &str) -> String {
         }
     }
     printable
+}
+
+/// The largest number of names that a message lists.
+const LISTED: usize = 20;
+
+/// Names with a separator, and the number of those beyond the first twenty: a message names each of a
+/// few scans or wavelengths, and remains readable where a file holds thousands of them.
+///
+/// ```
+/// use brdf_fit::format::listed;
+///
+/// assert_eq!(listed(&["a.csv", "b.csv"], ", "), "a.csv, b.csv");
+/// assert!(listed(&["a.csv"; 1000], ", ").ends_with(", a.csv and 980 others"));
+/// ```
+pub fn listed(names: &[impl AsRef<str>], separator: &str) -> String {
+    let shown: Vec<&str> = names.iter().take(LISTED).map(AsRef::as_ref).collect();
+    let shown = shown.join(separator);
+    match names.len().saturating_sub(LISTED) {
+        0 => shown,
+        others => format!("{shown} and {}", counted(others, "other")),
+    }
+}
+
+/// Each item once, in the order of first occurrence.
+pub(crate) fn distinct<T: Eq + Hash + Clone>(all: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut known = HashSet::new();
+    let all = all.into_iter();
+    all.filter(|item| known.insert(item.clone())).collect()
 }
 
 /// `1 reading`, `3 readings`.

@@ -176,7 +176,10 @@ fn check(scan: &Measurements, options: &FitOptions, depth: Depth) -> Result<(), 
     match Document::from_bytes("fit.json", json.as_bytes()) {
         Ok(read) => {
             let wavelength_um = scan.wavelengths()[0];
-            prop_assert_eq!(read.options_for("scan", wavelength_um), Some(options));
+            prop_assert_eq!(
+                read.by_file().options_for("scan", wavelength_um),
+                Some(options)
+            );
         }
         Err(DocumentError::NoFits { .. }) => prop_assert!(!has_fit),
         Err(error) => prop_assert!(false, "{error}"),

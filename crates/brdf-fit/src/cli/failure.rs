@@ -10,6 +10,7 @@ use super::explain;
 use super::stream::{StreamError, shown};
 use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
+use crate::format::listed;
 use crate::output::{TakenError, WriteError};
 use crate::plot::FolderError;
 use crate::plot::PlotError;
@@ -58,7 +59,7 @@ pub(super) enum Failure {
     Row(String),
     #[error("{}: holds no fit", shown(.0).display())]
     NoFit(PathBuf),
-    #[error("{}: no fit of {wavelength_um} um: expected one of {}", shown(.path).display(), .found.join(", "))]
+    #[error("{}: no fit of {wavelength_um} um: expected one of {}", shown(.path).display(), listed(.found, ", "))]
     NoSuchWavelength {
         path: PathBuf,
         wavelength_um: f64,

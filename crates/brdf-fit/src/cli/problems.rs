@@ -1,5 +1,8 @@
 //! The problems of a run, each of which is printed once.
 
+use std::collections::HashMap;
+
+use crate::format::{distinct, listed};
 use crate::model::Model;
 use crate::output::print_error;
 
@@ -87,30 +90,33 @@ impl Problem {
     fn text(&self) -> String {
         match self {
             Self::Single(message) => message.clone(),
-            Self::Usage { message, places } => format!("{}: {message}", listed(places)),
+            Self::Usage { message, places } => format!("{}: {message}", listed_places(places)),
         }
     }
 }
 
 /// Files with their wavelengths, and the models unless all of them are concerned.
-fn listed(places: &[Place]) -> String {
-    let (mut files, mut models): (Vec<(&str, Vec<f64>)>, Vec<String>) = (Vec::new(), Vec::new());
+fn listed_places(places: &[Place]) -> String {
+    let files = distinct(places.iter().map(|place| place.file.as_str()));
+    let mut wavelengths: HashMap<&str, Vec<String>> = HashMap::new();
     for place in places {
-        let known = files.iter().position(|(file, _)| *file == place.file);
-        let index = known.unwrap_or_else(|| {
-            files.push((&place.file, Vec::new()));
-            files.len() - 1
-        });
-        let wavelengths = &mut files[index].1;
-        wavelengths.extend(place.wavelength_um.filter(|w| !wavelengths.contains(w)));
-        let model = place.model.map(|model| model.to_string());
-        models.extend(model.filter(|model| !models.contains(model)));
+        let of_file = wavelengths.entry(&place.file).or_default();
+        of_file.extend(
+            place
+                .wavelength_um
+                .map(|wavelength| format!("{wavelength} um")),
+        );
     }
-    let files = files.into_iter().map(|(file, wavelengths)| {
-        let wavelengths = wavelengths.iter().map(|w| format!(", {w} um"));
-        format!("{file}{}", wavelengths.collect::<String>())
+    let files = files.into_iter().map(|file| {
+        let wavelengths = wavelengths.remove(file).unwrap_or_default();
+        let names: Vec<String> = std::iter::once(file.to_owned())
+            .chain(distinct(wavelengths))
+            .collect();
+        listed(&names, ", ")
     });
-    let files = files.collect::<Vec<_>>().join("; ");
+    let files = listed(&files.collect::<Vec<_>>(), "; ");
+    let models = places.iter().filter_map(|place| place.model);
+    let models = distinct(models.map(|model| model.to_string()));
     if models.is_empty() || models.len() == Model::WITH_REFERENCES.len() {
         files
     } else {
@@ -148,9 +154,21 @@ mod tests {
     }
 
     #[test]
+    fn of_many_places_the_first_are_listed_and_the_others_counted() {
+        let wavelengths = (0..1000).map(|i| at("a.csv", Some(f64::from(i)), None));
+        let text = listed_places(&wavelengths.collect::<Vec<_>>());
+        assert!(text.starts_with("a.csv, 0 um, 1 um, "), "{text}");
+        assert!(text.ends_with(", 18 um and 981 others"), "{text}");
+        let files = (0..1000).map(|i| at(&format!("{i}.csv"), Some(0.5), None));
+        let text = listed_places(&files.collect::<Vec<_>>());
+        assert!(text.starts_with("0.csv, 0.5 um; 1.csv, 0.5 um; "), "{text}");
+        assert!(text.ends_with("; 19.csv, 0.5 um and 980 others"), "{text}");
+    }
+
+    #[test]
     fn models_are_listed_unless_all_are_concerned() {
         let all = Model::WITH_REFERENCES.map(|model| at("a.csv", None, Some(model)));
-        assert_eq!(listed(&all), "a.csv");
-        assert_eq!(listed(&all[..2]), "a.csv (fitting three, three+n)");
+        assert_eq!(listed_places(&all), "a.csv");
+        assert_eq!(listed_places(&all[..2]), "a.csv (fitting three, three+n)");
     }
 }

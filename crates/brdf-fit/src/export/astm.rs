@@ -8,10 +8,12 @@
 use std::f64::consts::PI;
 use std::io::{self, Write};
 
-use brdf_core::AnyBrdf;
+use brdf_core::{AnyBrdf, Geometry};
 
 use super::comments;
-use super::domain::{MAX_ZENITH_DEG, continued_value, dense_near_zero, evenly_spaced};
+use super::domain::{
+    MAX_ZENITH_DEG, continued_geometry, continued_value, dense_near_zero, evenly_spaced,
+};
 use super::error::ExportError;
 use super::interpolated::{Angles, Table, Tabulated};
 use super::material::{Fitted, Material};
@@ -91,6 +93,12 @@ struct BySphericalAngles {
 }
 
 impl Tabulated for BySphericalAngles {
+    type Point = Option<Geometry>;
+
+    fn point(&self, at: Angles) -> Option<Geometry> {
+        continued_geometry(at)
+    }
+
     fn channels(&self) -> usize {
         self.brdfs.len()
     }
@@ -100,11 +108,11 @@ impl Tabulated for BySphericalAngles {
         [(0.0, limit), (0.0, limit), (0.0, PI)]
     }
 
-    fn value(&self, channel: usize, at: Angles) -> f64 {
-        continued_value(&self.brdfs[channel], at)
+    fn value(&self, channel: usize, geometry: &Option<Geometry>) -> f64 {
+        continued_value(&self.brdfs[channel], geometry.as_ref())
     }
 
-    fn tolerance_applies(&self, _: Angles) -> bool {
+    fn tolerance_applies(&self, _: &Option<Geometry>) -> bool {
         true
     }
 

@@ -14,10 +14,15 @@ pub(super) fn value(brdf: &AnyBrdf, [psi, theta, phi]: [f64; 3]) -> Option<f64> 
     Some(brdf.value(&geometry))
 }
 
-/// f_r in 1/sr by psi, theta and phi in radians. Below the horizon it is the value at the horizon,
-/// so that the cells of a table that extend below it can be interpolated.
-pub(super) fn continued_value(brdf: &AnyBrdf, [psi, theta, phi]: [f64; 3]) -> f64 {
-    value(brdf, [psi, theta.min(FRAC_PI_2.next_down()), phi]).unwrap_or(0.0)
+/// The geometry of psi, theta and phi in radians. Below the horizon it is that at the horizon, so that
+/// the cells of a table that extend below it can be interpolated.
+pub(super) fn continued_geometry([psi, theta, phi]: [f64; 3]) -> Option<Geometry> {
+    Geometry::new(psi, theta.min(FRAC_PI_2.next_down()), phi).ok()
+}
+
+/// f_r in 1/sr at a [`continued_geometry`]; 0 outside the domain of the model.
+pub(super) fn continued_value(brdf: &AnyBrdf, geometry: Option<&Geometry>) -> f64 {
+    geometry.map_or(0.0, |geometry| brdf.value(geometry))
 }
 
 /// Angles at equal distances, both ends included; `count` is at least 2.

@@ -19,13 +19,15 @@ pub enum ExportError {
     /// An interpolated table within the tolerance would be too large.
     #[error(
         "a table within the tolerance {tolerance:e} has more than {MAX_ENTRIES} entries: expected {}",
-        expected(*.reachable)
+        expected(*.reachable, *.fits)
     )]
     Tolerance {
         /// The given tolerance, a relative error of f_r.
         tolerance: f64,
         /// About the smallest one that a table satisfies; `None` where the lobe is too narrow for any.
         reachable: Option<f64>,
+        /// The number of fits in the table.
+        fits: usize,
     },
     /// The bins of a MERL table are too wide for the tolerance.
     #[error(
@@ -55,13 +57,39 @@ impl ExportError {
         Self::Tolerance {
             tolerance,
             reachable: Some(unreachable.reachable).filter(|reachable| *reachable < 1.0),
+            fits: unreachable.channels,
         }
     }
 }
 
-fn expected(reachable: Option<f64>) -> String {
-    match reachable {
-        Some(tolerance) => format!("a tolerance of about {tolerance:.1e} or more"),
-        None => "source code, because the lobe is too narrow for a table".to_owned(),
+fn expected(reachable: Option<f64>, fits: usize) -> String {
+    match (reachable, fits) {
+        (Some(tolerance), _) => format!("a tolerance of about {tolerance:.1e} or more"),
+        (None, 1) => "source code, because the lobe is too narrow for a table".to_owned(),
+        (None, _) => format!(
+            "fewer fits than {fits}, or source code, because the lobes are too narrow for one table of all"
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_no_table_suffices_a_table_of_fewer_fits_may() {
+        let error = |channels| {
+            let unreachable = Unreachable {
+                reachable: 1.0,
+                channels,
+            };
+            ExportError::tolerance(0.05, &unreachable).to_string()
+        };
+        assert!(!error(1).contains("fewer"), "{}", error(1));
+        let many = error(60_000);
+        assert!(
+            many.contains("expected fewer fits than 60000, or source code"),
+            "{many}"
+        );
     }
 }

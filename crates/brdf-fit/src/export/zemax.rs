@@ -9,10 +9,12 @@
 
 use std::io::{self, Write};
 
-use brdf_core::AnyBrdf;
+use brdf_core::{AnyBrdf, Geometry};
 
 use super::comments;
-use super::domain::{MAX_ZENITH_DEG, continued_value, dense_near_zero, evenly_spaced};
+use super::domain::{
+    MAX_ZENITH_DEG, continued_geometry, continued_value, dense_near_zero, evenly_spaced,
+};
 use super::error::ExportError;
 use super::interpolated::{Angles, Table, Tabulated};
 use super::material::Fitted;
@@ -87,6 +89,12 @@ struct AboutSpecular {
     brdf: AnyBrdf,
 }
 
+/// A direction pair of the table.
+struct Point {
+    geometry: Option<Geometry>,
+    is_within_limits: bool,
+}
+
 impl AboutSpecular {
     /// The view zenith angle in radians, which may be below the surface, and the azimuth.
     fn view([psi_deg, azimuth_deg, radial_deg]: Angles) -> (f64, f64) {
@@ -99,6 +107,17 @@ impl AboutSpecular {
 }
 
 impl Tabulated for AboutSpecular {
+    type Point = Point;
+
+    fn point(&self, at: Angles) -> Point {
+        let (theta, phi) = Self::view(at);
+        let limit = MAX_ZENITH_DEG.to_radians();
+        Point {
+            geometry: continued_geometry([at[0].to_radians(), theta, phi]),
+            is_within_limits: at[0] <= MAX_ZENITH_DEG && theta <= limit,
+        }
+    }
+
     fn channels(&self) -> usize {
         1
     }
@@ -111,14 +130,12 @@ impl Tabulated for AboutSpecular {
         ]
     }
 
-    fn value(&self, _: usize, at: Angles) -> f64 {
-        let (theta, phi) = Self::view(at);
-        continued_value(&self.brdf, [at[0].to_radians(), theta, phi])
+    fn value(&self, _: usize, at: &Point) -> f64 {
+        continued_value(&self.brdf, at.geometry.as_ref())
     }
 
-    fn tolerance_applies(&self, at: Angles) -> bool {
-        let limit = MAX_ZENITH_DEG.to_radians();
-        at[0] <= MAX_ZENITH_DEG && Self::view(at).0 <= limit
+    fn tolerance_applies(&self, at: &Point) -> bool {
+        at.is_within_limits
     }
 
     fn samples(&self) -> [Vec<f64>; 3] {

@@ -72,6 +72,18 @@ impl LazyScan {
         }
     }
 
+    /// [`measurements`](Self::measurements), by value.
+    ///
+    /// # Errors
+    ///
+    /// As [`measurements`](Self::measurements).
+    pub fn into_measurements(self) -> Result<Measurements, ReadError> {
+        match self {
+            Self::Loaded(measurements) => Ok(measurements),
+            Self::MerlChannel { path, channel } => Table::open(path)?.channel(channel),
+        }
+    }
+
     /// The readings that figures show: all readings of a scan in memory, and of a MERL channel
     /// those of a scan in the plane of incidence ([`Table::in_plane_scan`]).
     ///

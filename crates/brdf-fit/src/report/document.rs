@@ -1,5 +1,7 @@
 //! The JSON document of fits: writing and reading it.
 
+use std::collections::HashMap;
+use std::ffi::OsStr;
 use std::fs;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -141,20 +143,51 @@ impl Document {
         Ok(document)
     }
 
-    /// The first report on a file with this path, or else with this file name: on the file alone, or
-    /// joined with others.
-    pub fn report_on(&self, source: &Path) -> Option<&Report> {
-        let is_on = |report: &Report, is_file: &dyn Fn(&Path) -> bool| {
-            let mut files = std::iter::once(&report.file).chain(&report.read_settings.joined);
-            files.any(|file| is_file(Path::new(file)))
+    /// The reports by the files that they are on.
+    pub fn by_file(&self) -> ByFile<'_> {
+        let mut by_file = ByFile {
+            reports: &self.reports,
+            paths: HashMap::new(),
+            names: HashMap::new(),
         };
-        let mut reports = self.reports.iter();
-        let same_path = reports.find(|report| is_on(report, &|file| file == source));
-        let same_name = |file: &Path| file.file_name() == source.file_name();
-        same_path.or_else(|| {
-            let mut reports = self.reports.iter();
-            reports.find(|report| is_on(report, &same_name))
-        })
+        for report in &self.reports {
+            for file in std::iter::once(&report.file).chain(&report.read_settings.joined) {
+                let path = Path::new(file);
+                by_file.paths.entry(path).or_default().push(report);
+                let of_name = by_file.names.entry(name_of(path)).or_default();
+                of_name.push(report);
+            }
+        }
+        by_file
+    }
+}
+
+/// The reports of a [`Document`] by the files that they are on, for many look-ups.
+#[derive(Debug)]
+pub struct ByFile<'a> {
+    reports: &'a [Report],
+    paths: HashMap<&'a Path, Vec<&'a Report>>,
+    names: HashMap<&'a OsStr, Vec<&'a Report>>,
+}
+
+impl<'a> ByFile<'a> {
+    /// All reports, in the order of the document.
+    pub fn reports(&self) -> &'a [Report] {
+        self.reports
+    }
+
+    /// The reports on a file with this path, and those on a file of this name.
+    fn of(&self, source: &Path) -> [&[&'a Report]; 2] {
+        let of_path = self.paths.get(source);
+        let of_name = self.names.get(name_of(source));
+        [of_path, of_name].map(|reports| reports.map_or(&[][..], Vec::as_slice))
+    }
+
+    /// The first report on a file with this path, or else with this file name: on the
+    /// file alone, or joined with others.
+    pub fn report_on(&self, source: &Path) -> Option<&'a Report> {
+        let [of_path, of_name] = self.of(source);
+        of_path.first().or_else(|| of_name.first()).copied()
     }
 
     /// The options of the fit that matches a scan of a file at one wavelength, in micrometres.
@@ -162,35 +195,39 @@ impl Document {
     /// A fit matches if its wavelength is within 1 %, or if neither states a wavelength. Among several
     /// matches, the same path takes precedence, then the same file name, then the nearest wavelength,
     /// then the order in the document.
-    pub fn options_for(&self, source: &str, wavelength_um: Option<f64>) -> Option<&FitOptions> {
-        let source = Path::new(source);
-        let key = |report: &Report| {
-            let file = Path::new(&report.file);
-            let other_name = file.file_name() != source.file_name();
-            let distance = distance(report.wavelength_um, wavelength_um)?;
-            Some((file != source, other_name, distance))
-        };
-        let matching = self.reports.iter().filter_map(|report| {
-            let options = &report.fit.as_ref()?.options;
-            Some((key(report)?, options))
-        });
-        let nearest = matching.min_by(|(a, _), (b, _)| {
-            let names = (a.0, a.1).cmp(&(b.0, b.1));
-            names.then(a.2.total_cmp(&b.2))
-        });
-        nearest.map(|(_, options)| options)
+    pub fn options_for(&self, source: &str, wavelength_um: Option<f64>) -> Option<&'a FitOptions> {
+        let [of_path, of_name] = self.of(Path::new(source));
+        nearest(of_path.iter().copied(), wavelength_um)
+            .or_else(|| nearest(of_name.iter().copied(), wavelength_um))
+            .or_else(|| nearest(self.reports, wavelength_um))
     }
 
     /// The indices of the readings that the fit of this file at this wavelength leaves out: see
     /// [`Report::left_out`]. They mean nothing for another file.
-    pub fn left_out_of(&self, source: &str, wavelength_um: Option<f64>) -> &[usize] {
-        let name = Path::new(source).file_name();
-        let is_same = |report: &&Report| {
-            Path::new(&report.file).file_name() == name && report.wavelength_um == wavelength_um
-        };
-        let mut same = self.reports.iter().filter(is_same);
-        same.next().map_or(&[], |report| &report.left_out)
+    pub fn left_out_of(&self, source: &str, wavelength_um: Option<f64>) -> &'a [usize] {
+        let [_, of_name] = self.of(Path::new(source));
+        let mut of_name = of_name.iter();
+        let same = of_name.find(|report| report.wavelength_um == wavelength_um);
+        same.map_or(&[], |report| &report.left_out)
     }
+}
+
+/// The file name of a path; empty where it has none.
+fn name_of(path: &Path) -> &OsStr {
+    path.file_name().unwrap_or_default()
+}
+
+/// The options of the fit that is nearest to a wavelength, of those that match it; the first of several.
+fn nearest<'a>(
+    reports: impl IntoIterator<Item = &'a Report>,
+    wavelength_um: Option<f64>,
+) -> Option<&'a FitOptions> {
+    let matching = reports.into_iter().filter_map(|report| {
+        let options = &report.fit.as_ref()?.options;
+        Some((distance(report.wavelength_um, wavelength_um)?, options))
+    });
+    let nearest = matching.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    nearest.map(|(_, options)| options)
 }
 
 /// The relative difference of a wavelength from a wanted one; `None` if they do not match.
@@ -251,7 +288,7 @@ mod tests {
             ("b/x.csv", Some(0.6), None),
             ("b/x.csv", None, Some(4)),
         ] {
-            let options = document.options_for(file, wavelength_um);
+            let options = document.by_file().options_for(file, wavelength_um);
             let found = options.map(|options| options.max_iterations);
             assert_eq!(found, expected, "{file} {wavelength_um:?}");
         }

@@ -23,7 +23,7 @@ pub use csv::{
 
 #[cfg(feature = "export")]
 pub(crate) use document::without_position;
-pub use document::{Document, DocumentError};
+pub use document::{ByFile, Document, DocumentError};
 pub use html::{Picture, html};
 pub use models::model_table;
 pub use run::{Depth, ModelChoice, Report};

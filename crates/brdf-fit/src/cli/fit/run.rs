@@ -13,9 +13,10 @@ use crate::cli::problems::{Place, Problems, place};
 use crate::cli::progress::{PhaseMessage, bar};
 use crate::cli::stream;
 use crate::fit::{FitError, FitOptions};
+use crate::format::listed;
 use crate::progress::{NoObserver, Observer};
 use crate::read::{LazyScan, ReadError};
-use crate::report::{Document, Report};
+use crate::report::{ByFile, Document, Report};
 use crate::scan::Measurements;
 
 /// Fits all scans, and prints and writes the results. A problem with one scan or one output does
@@ -29,6 +30,7 @@ pub(in crate::cli) fn run(arguments: &Arguments) -> Outcome {
         Err(failure) => return print_failures([failure]),
     };
     let mut problems = Problems::default();
+    let document = document.as_ref().map(Document::by_file);
     let scans = read_all(arguments, document.as_ref(), &mut problems);
     let jobs = plan(&scans, arguments, document.as_ref(), &mut problems);
     if let Err(failure) = arguments.check_figures(&jobs, &in_use) {
@@ -69,7 +71,7 @@ fn add_error(problems: &mut Problems, report: &Report, error: &FitError, argumen
 /// Reads every file.
 fn read_all(
     arguments: &Arguments,
-    document: Option<&Document>,
+    document: Option<&ByFile<'_>>,
     problems: &mut Problems,
 ) -> Vec<LazyScan> {
     let files: Vec<Result<Vec<LazyScan>, ReadError>> = arguments
@@ -92,16 +94,16 @@ fn read_all(
         false => scans,
         // A sample of which a part is missing is not fitted.
         true if !all_read => Vec::new(),
-        true => joined(&scans, problems),
+        true => joined(scans, problems),
     }
 }
 
 /// One scan of all files, for each wavelength.
-fn joined(scans: &[LazyScan], problems: &mut Problems) -> Vec<LazyScan> {
-    let all: Result<Vec<Measurements>, ReadError> = scans
-        .iter()
-        .map(|scan| scan.measurements().map(Cow::into_owned))
-        .collect();
+fn joined(scans: Vec<LazyScan>, problems: &mut Problems) -> Vec<LazyScan> {
+    let names = scans.iter().map(LazyScan::source);
+    let names: Vec<String> = names.map(Cow::into_owned).collect();
+    let all: Result<Vec<Measurements>, ReadError> =
+        scans.into_iter().map(LazyScan::into_measurements).collect();
     let all = match all {
         Ok(all) => all,
         Err(error) => {
@@ -117,11 +119,7 @@ fn joined(scans: &[LazyScan], problems: &mut Problems) -> Vec<LazyScan> {
             .collect();
     }
     let place = Place {
-        file: scans
-            .iter()
-            .map(LazyScan::source)
-            .collect::<Vec<_>>()
-            .join(", "),
+        file: listed(&names, ", "),
         wavelength_um: None,
         model: None,
     };
@@ -142,7 +140,7 @@ pub(super) struct Job<'a> {
 fn plan<'a>(
     scans: &'a [LazyScan],
     arguments: &Arguments,
-    document: Option<&'a Document>,
+    document: Option<&ByFile<'a>>,
     problems: &mut Problems,
 ) -> Vec<Job<'a>> {
     let mut jobs = Vec::new();

@@ -13,7 +13,7 @@ use crate::objective::weights::{AssumedErrors, Weights};
 use crate::output::{FilesInUse, check_writable};
 use crate::plot::{PAGE, figure_files};
 use crate::read::ReadOptions;
-use crate::report::{Depth, Document, DocumentError, ModelChoice};
+use crate::report::{ByFile, Depth, Document, DocumentError, ModelChoice};
 use crate::scan::{Convention, Format};
 use crate::solver::Method;
 
@@ -143,9 +143,9 @@ impl Arguments {
     /// How a file is read: as the options say, next as the document states for this file, and next
     /// with the sides, columns and declarations that the options of the earlier run gave to its first
     /// file.
-    pub(super) fn read_options(&self, file: &Path, document: Option<&Document>) -> ReadOptions {
+    pub(super) fn read_options(&self, file: &Path, document: Option<&ByFile<'_>>) -> ReadOptions {
         let known = document.and_then(|document| document.report_on(stream::shown(file)));
-        let first = document.map(|document| &document.reports[0]);
+        let first = document.and_then(|document| document.reports().first());
         let with_sides = first.filter(|first| {
             matches!(first.format, Format::Csv | Format::Goniometer)
                 && first.convention != Convention::default()
@@ -172,11 +172,11 @@ impl Arguments {
     }
 
     /// Whether the files are joined: by the option, or as the first of them was in the earlier run.
-    pub(super) fn joins(&self, document: Option<&Document>) -> bool {
-        let report = document.map(|document| {
+    pub(super) fn joins(&self, document: Option<&ByFile<'_>>) -> bool {
+        let report = document.and_then(|document| {
             let file = self.files.first();
             let known = file.and_then(|file| document.report_on(stream::shown(file)));
-            known.unwrap_or(&document.reports[0])
+            known.or_else(|| document.reports().first())
         });
         self.join || report.is_some_and(|report| !report.read_settings.joined.is_empty())
     }

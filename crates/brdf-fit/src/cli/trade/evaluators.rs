@@ -12,6 +12,7 @@ use super::values::Row;
 use crate::cli::failure::Failure;
 use crate::cli::outcome::Outcome;
 use crate::fit::Fit;
+use crate::format::distinct;
 use crate::report::{Document, Report};
 use crate::scan::WAVELENGTH_TOLERANCE;
 use crate::tradeoff::evaluators::{
@@ -76,18 +77,16 @@ impl Evaluation {
         });
         let nearest = near.min_by(|(a, _), (b, _)| a.total_cmp(b));
         nearest.map(|(_, found)| found).ok_or_else(|| {
-            let mut found: Vec<String> = Vec::new();
-            for (_, fit) in fits {
-                let wavelength = fit.wavelength_um.map(|w| format!("{w} um"));
-                let name = wavelength.unwrap_or_else(|| "one without a wavelength".to_owned());
-                if !found.contains(&name) {
-                    found.push(name);
-                }
-            }
+            let name = |(_, fit): (&Report, &Fit)| {
+                fit.wavelength_um.map_or_else(
+                    || "one without a wavelength".to_owned(),
+                    |wavelength| format!("{wavelength} um"),
+                )
+            };
             Failure::NoSuchWavelength {
                 path: path.to_owned(),
                 wavelength_um: wanted,
-                found,
+                found: distinct(fits.map(name)),
             }
         })
     }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use brdf_core::ParameterError;
 
+use crate::format::listed;
 use crate::report::{DocumentError, without_position};
 
 /// The version of the JSON format of a [`Material`](super::Material).
@@ -62,7 +63,7 @@ pub enum MaterialError {
 #[non_exhaustive]
 pub enum SelectionError {
     /// No scan has the given name.
-    #[error("no fit of {name}: expected one of {}", .available.join(", "))]
+    #[error("no fit of {name}: expected one of {}", listed(.available, ", "))]
     NoSuchFile {
         /// The given path or file name.
         name: String,
@@ -70,13 +71,13 @@ pub enum SelectionError {
         available: Vec<String>,
     },
     /// The fits are of several scans.
-    #[error("there are fits of several files: choose one of {}", .available.join(", "))]
+    #[error("there are fits of several files: choose one of {}", listed(.available, ", "))]
     SeveralFiles {
         /// The paths of the scans.
         available: Vec<String>,
     },
     /// No fit is within 1 % of the given wavelength.
-    #[error("no fit at {wavelength_um} um: expected one of {}", .available.join(", "))]
+    #[error("no fit at {wavelength_um} um: expected one of {}", listed(.available, ", "))]
     NoSuchWavelength {
         /// The given wavelength in micrometres.
         wavelength_um: f64,
@@ -84,7 +85,7 @@ pub enum SelectionError {
         available: Vec<String>,
     },
     /// One fit is needed, and there are several.
-    #[error("there are several fits: choose one of the wavelengths {}", .available.join(", "))]
+    #[error("there are several fits: choose one of the wavelengths {}", listed(.available, ", "))]
     SeveralWavelengths {
         /// The wavelengths of the fits, as text.
         available: Vec<String>,
@@ -93,7 +94,7 @@ pub enum SelectionError {
     #[error(
         "no fit within {max_distance_um} um of {colour} ({primary_um} um): choose one wavelength, for \
          grey, or those of red, green and blue, from {}",
-        .available.join(", ")
+        listed(.available, ", ")
     )]
     NoColour {
         /// The colour.

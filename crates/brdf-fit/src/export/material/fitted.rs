@@ -6,6 +6,7 @@ use brdf_core::AnyBrdf;
 use serde::{Deserialize, Serialize};
 
 use super::error::SelectionError;
+use crate::format::distinct;
 use crate::scan::WAVELENGTH_TOLERANCE;
 
 /// The fits of one surface.
@@ -132,21 +133,11 @@ impl Fitted {
     }
 }
 
-/// Each item once, in the order of first occurrence.
-fn distinct(all: impl Iterator<Item = String>) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    for one in all {
-        if !found.contains(&one) {
-            found.push(one);
-        }
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use brdf_core::Family;
 
+    use super::Material;
     use crate::export::test_fits::{material, of_scan};
 
     #[test]
@@ -182,6 +173,22 @@ mod tests {
             );
             assert_eq!(error, expected);
         }
+    }
+
+    #[test]
+    fn of_thousands_of_fits_the_first_are_named_and_the_others_counted() {
+        let fits = (0_u32..3000).map(|i| {
+            let wavelength_um = Some(f64::from(1000 + i % 1500));
+            of_scan(&format!("{}.csv", i / 1500), wavelength_um, Family::Paper)
+        });
+        let many = Material {
+            fits: fits.collect(),
+        };
+        let error = many.only().unwrap_err().to_string();
+        assert!(error.contains("1000 um, 1001 um, "), "{error}");
+        assert!(error.ends_with(", 1019 um and 1480 others"), "{error}");
+        let error = many.for_file(None).unwrap_err().to_string();
+        assert!(error.ends_with("choose one of 0.csv, 1.csv"), "{error}");
     }
 
     #[test]

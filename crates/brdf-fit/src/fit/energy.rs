@@ -23,6 +23,9 @@ pub const DEFAULT_LIMIT_DEG: f64 = 85.0;
 /// the angle, is searched.
 const STEPS: u32 = 17;
 
+/// The steps at which the search begins. Most lobes reflect most at the limit.
+const FEW_STEPS: [usize; 5] = [17, 13, 9, 4, 0];
+
 /// Relative tolerance of the reflectances.
 const TOLERANCE: f64 = 1e-5;
 
@@ -31,6 +34,12 @@ const STARTS: usize = 6;
 
 /// Relative tolerance of the reflectances by which the points of the grid are ranked.
 const ROUGH: f64 = 0.03;
+
+/// The number of points of the grid that are ranked together.
+const RANKED_AT_ONCE: usize = 64;
+
+/// The rounding of E, a fraction, at a point of the grid.
+const ROUNDING: f64 = 1e-9;
 
 /// A simplex has converged when E over its corners differs by less than this fraction of E.
 const SPREAD: f64 = 1e-12;
@@ -83,8 +92,8 @@ pub(crate) fn constrain_energy(
     } else {
         bounded.best_points()?
     };
-    for start in starts {
-        let found = bounded.descend(&start)?;
+    let descents = starts.par_iter().map(|start| bounded.descend(start));
+    for found in descents.collect::<Result<Vec<_>, _>>()? {
         if found.1 < lowest.1 {
             lowest = found;
         }
@@ -104,12 +113,32 @@ fn axes(model: ReducedModel) -> Vec<Parameter> {
         .collect()
 }
 
-/// The largest reflectance s(psi) of the specular part alone with k2 = 1, up to the limit.
+/// The largest reflectance s(psi) of the specular part alone with k2 = 1, over the steps of psi up to
+/// the limit.
+///
+/// s is a smooth function of psi without narrow features: the largest of a few steps is followed upwards
+/// to the largest of all.
 fn largest_specular(family: Family, at: &ModelParameters, limit: f64) -> f64 {
-    (0..=STEPS)
-        .map(|step| limit * f64::from(step) / f64::from(STEPS))
-        .map(|psi| specular(family, at, psi, TOLERANCE))
-        .fold(0.0, f64::max)
+    let mut known = [None; STEPS as usize + 1];
+    let mut of = |step: usize| {
+        *known[step].get_or_insert_with(|| {
+            let psi = limit * step as f64 / f64::from(STEPS);
+            specular(family, at, psi, TOLERANCE)
+        })
+    };
+    let larger = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
+    let few = FEW_STEPS.map(|step| (step, of(step)));
+    let mut largest = few.into_iter().fold((0, 0.0), larger);
+    loop {
+        let (step, _) = largest;
+        let beside = [step.checked_sub(1), Some(step + 1)].into_iter().flatten();
+        let beside = beside.filter(|step| *step <= STEPS as usize);
+        let next = beside.map(|step| (step, of(step))).fold(largest, larger);
+        if next == largest {
+            return largest.1;
+        }
+        largest = next;
+    }
 }
 
 /// s(psi), the reflectance of the specular part alone with k2 = 1.
@@ -161,22 +190,31 @@ impl Bounded<'_> {
     }
 
     /// The approximately lowest points of the grid under the constraint, in ascending order of E.
+    ///
+    /// The constraint raises E: once enough points are known, those with a larger E without it are none
+    /// of the lowest, and their reflectances are not computed.
     fn best_points(&self) -> Result<Vec<ModelParameters>, Cancelled> {
         let search = GridSearch::new(self.objective, self.model, self.progress)?;
-        let ranked = search.whole().ascending();
-        let mut ranked: Vec<(ModelParameters, f64)> = ranked
-            .into_par_iter()
-            .map(|point| {
+        let mut best: Vec<(ModelParameters, f64)> = Vec::new();
+        for points in search.whole().ascending().chunks(RANKED_AT_ONCE) {
+            let enough = best.get(STARTS - 1).zip(points.first());
+            if search.is_of_all_rows
+                && enough.is_some_and(|(last, next)| next.error > last.1 + ROUNDING)
+            {
+                break;
+            }
+            let bounded = points.par_iter().map(|point| {
                 self.progress.advance()?;
                 let at = point.parameters;
                 let largest = specular(self.model.family(), &at, self.limit, ROUGH);
                 Ok(self.weights_below(&at, largest))
-            })
-            .collect::<Result<_, Cancelled>>()?;
-        ranked.sort_by(|a, b| a.1.total_cmp(&b.1));
-        ranked.retain(|(_, error)| error.is_finite());
-        ranked.truncate(STARTS);
-        Ok(ranked.into_iter().map(|(at, _)| at).collect())
+            });
+            best.extend(bounded.collect::<Result<Vec<_>, Cancelled>>()?);
+            best.retain(|(_, error)| error.is_finite());
+            best.sort_by(|a, b| a.1.total_cmp(&b.1));
+            best.truncate(STARTS);
+        }
+        Ok(best.into_iter().map(|(at, _)| at).collect())
     }
 
     /// Runs simplices one after another until one makes no progress.
@@ -295,11 +333,16 @@ fn weights_below(fixed: [Option<f64>; 2], sums: &ProfileSums, largest: f64) -> O
 
 #[cfg(test)]
 mod tests {
+    use std::ops::ControlFlow;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
     use brdf_core::published::PUBLISHED;
+    use proptest::prelude::*;
 
     use super::*;
-    use crate::fit::{FitOptions, fit};
+    use crate::fit::{FitOptions, fit, fit_observed};
     use crate::model::Model;
+    use crate::progress::{Observer, Phase, Step};
     use crate::scan::RefractiveIndex;
     use crate::scan::synthetic::scan;
 
@@ -360,6 +403,48 @@ mod tests {
                     let other = objective.error(&ModelParameters { k2, kd, ..at });
                     assert!(other >= 0.01 * bound.e_percent * (1.0 - 1e-9));
                 }
+            }
+        }
+    }
+
+    /// Counts the steps of the energy constraint.
+    #[derive(Default)]
+    struct Steps(AtomicUsize);
+
+    impl Observer for Steps {
+        fn step(&self, step: &Step) -> ControlFlow<()> {
+            let counts = usize::from(step.phase == Phase::Energy);
+            self.0.fetch_add(counts, Ordering::Relaxed);
+            ControlFlow::Continue(())
+        }
+    }
+
+    #[test]
+    fn reflectances_are_computed_for_a_small_part_of_the_grid() {
+        let row = PUBLISHED[3];
+        let scan = scan(row.parameters, row.n);
+        let steps = Steps::default();
+        let options = options(row.n, Some(80.0), Model::PowerN);
+        let bound = fit_observed(&scan, &options, &steps).unwrap();
+        assert!(bound.energy.unwrap().binding);
+        // The grid has 13,944 points.
+        let steps = steps.0.into_inner();
+        assert!(steps < 6000, "{steps}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn the_largest_reflectance_is_that_of_all_steps(
+            log_k1 in -6.0..3.0_f64, n in 1.0..6.0, p in 0.1..16.0, limit_deg in 1.0..89.9_f64,
+        ) {
+            let at = ModelParameters { k2: 1.0, kd: 0.0, k1: log_k1.exp(), n, p };
+            let limit = limit_deg.to_radians();
+            for family in Family::ALL {
+                let all = (0..=STEPS).map(|step| limit * f64::from(step) / f64::from(STEPS));
+                let all = all.map(|psi| specular(family, &at, psi, TOLERANCE));
+                prop_assert_eq!(largest_specular(family, &at, limit), all.fold(0.0, f64::max));
             }
         }
     }

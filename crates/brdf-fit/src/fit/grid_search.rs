@@ -62,6 +62,8 @@ pub(crate) struct GridSearch {
     lobe: Vec<[f64; 3]>,
     /// aa, ay, yy of each fold.
     fixed: Vec<[f64; 3]>,
+    /// Whether E of the profile is that of the objective, not of a part of its rows.
+    pub(crate) is_of_all_rows: bool,
 }
 
 /// The profile over some choice of the folds.
@@ -102,7 +104,11 @@ impl GridSearch {
         if several_axes && objective.len() > SEARCHED_READINGS {
             // If E is not defined for the subset, for example because it is zero, all readings are used.
             if let Ok(thinned) = objective.thinned(SEARCHED_READINGS) {
-                return Self::over(&thinned, model, step, progress);
+                let search = Self::over(&thinned, model, step, progress)?;
+                return Ok(Self {
+                    is_of_all_rows: false,
+                    ..search
+                });
             }
         }
         Self::over(objective, model, step, progress)
@@ -152,6 +158,7 @@ impl GridSearch {
             axes,
             lobe,
             fixed,
+            is_of_all_rows: true,
         })
     }
 

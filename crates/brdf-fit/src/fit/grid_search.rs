@@ -6,6 +6,8 @@
 //! of k1 and, if they are free, of n and p. Its scalar products are stored for each fold of the
 //! incidences: the profile of any choice of folds follows without evaluating the model again.
 
+use std::borrow::Cow;
+
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
@@ -121,7 +123,7 @@ impl GridSearch {
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
         let axes = axes(model, objective.n(), objective.count(), step);
-        let fresnel: Vec<Vec<f64>> = axes[1]
+        let fresnel: Vec<Cow<'_, [f64]>> = axes[1]
             .iter()
             .map(|&n| objective.fresnel_column(n))
             .collect();
@@ -129,19 +131,20 @@ impl GridSearch {
         let segments = objective.segments();
         let folds = objective.folds();
         let mut lobe = Vec::new();
-        let mut shape = Vec::with_capacity(objective.len());
+        let mut shape = Vec::new();
         for &p in &axes[2] {
             for &k1 in &axes[0] {
                 progress.advance()?;
-                objective.shape_column(k1, p, &mut shape);
-                for fresnel in &fresnel {
-                    let start = lobe.len();
-                    lobe.resize(start + folds, [0.0; 3]);
-                    for (i, segment) in segments.iter().enumerate() {
-                        let rows = segment.rows.clone();
-                        let (s, r) = (&shape[rows.clone()], &fresnel[rows.clone()]);
-                        let products = lobe_products(s, r, &a[rows.clone()], &y[rows]);
-                        add(&mut lobe[start + i % folds], &products, 1.0);
+                let start = lobe.len();
+                lobe.resize(start + fresnel.len() * folds, [0.0; 3]);
+                for (i, segment) in segments.iter().enumerate() {
+                    let rows = || segment.rows.clone();
+                    objective.shape_column(k1, p, rows(), &mut shape);
+                    let of_n = lobe[start..].chunks_mut(folds);
+                    for (fresnel, sums) in fresnel.iter().zip(of_n) {
+                        let products =
+                            lobe_products(&shape, &fresnel[rows()], &a[rows()], &y[rows()]);
+                        add(&mut sums[i % folds], &products, 1.0);
                     }
                 }
             }

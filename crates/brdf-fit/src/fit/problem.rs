@@ -1,6 +1,7 @@
 //! A scan and the options of its fit, validated once: everything that minimises or evaluates E
 //! starts here.
 
+use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
 use std::time::Instant;
 
@@ -16,11 +17,11 @@ use super::relative::{RelativeFit, fit_relatively};
 use super::result::{FORMAT_VERSION, Fit, OwnAndAll, Stage};
 use super::robust::{RobustFit, RobustWeights, fit_robustly};
 use super::solution::{Searched, Solution};
-use super::start::{InitialValues, initial_values};
+use super::start::{InitialValues, Section, initial_values};
 use crate::format::{counted, in_degrees};
 use crate::model::{DEFAULT_N, FixedParameters, Parameter, ReducedModel};
-use crate::objective::Objective;
 use crate::objective::weights::AssumedErrors;
+use crate::objective::{Objective, Segment};
 use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
 use crate::scan::{Incidence, Measurements, up_to};
 use crate::solver::{Method, minimise};
@@ -43,9 +44,13 @@ pub struct FitProblem<'a> {
 /// The readings of the first stage.
 #[derive(Debug, Clone)]
 struct FirstStage {
-    /// The incidences that the initial values are taken from.
+    /// The incidences that the initial values are taken from, where the rows of the objective are not
+    /// readings.
     incidences: Vec<Incidence>,
-    /// E over the readings of the stage; `None` where these are all readings.
+    /// The number of its incidences; `None` where they are all.
+    part: Option<usize>,
+    /// E over the readings of the stage, where they are a part and the stage is alone. Before another
+    /// stage, it is made for the time of the stage.
     objective: Option<Objective>,
     /// Why stage 1 is left out although the options ask for it.
     left_out: Option<String>,
@@ -83,7 +88,7 @@ impl<'a> FitProblem<'a> {
             Objective::condensed
         };
         let all = build(measurements, model.family(), n, &options.weights)?;
-        let first_stage = FirstStage::choose(&all, measurements.incidences(), options);
+        let first_stage = FirstStage::choose(&all, measurements, options);
         Ok(Self {
             measurements,
             options,
@@ -108,18 +113,12 @@ impl<'a> FitProblem<'a> {
     /// The objective over the readings that the fit is of: all, or those of stage 1 where it is
     /// alone.
     pub fn objective(&self) -> &Objective {
-        match self.options.stage2 {
-            Some(_) => &self.all,
-            None => self.first_objective(),
-        }
+        self.first_stage.objective.as_ref().unwrap_or(&self.all)
     }
 
     /// [`objective`](Self::objective), by value.
     pub fn into_objective(self) -> Objective {
-        match (self.options.stage2, self.first_stage.objective) {
-            (None, Some(own)) => own,
-            _ => self.all,
-        }
+        self.first_stage.objective.unwrap_or(self.all)
     }
 
     /// E of eq. (5) as a fraction, over the readings that the fit is of.
@@ -131,7 +130,7 @@ impl<'a> FitProblem<'a> {
     /// or the start that the options give, within the ranges of the parameters.
     pub fn start(&self) -> ModelParameters {
         let progress = Progress::new(&NoObserver, Phase::Stage1);
-        match self.starting_point(&progress) {
+        match self.starting_point(&self.first_objective(), &progress) {
             Ok((_, start)) => start,
             Err(Cancelled) => unreachable!("NoObserver never cancels"),
         }
@@ -177,11 +176,13 @@ impl<'a> FitProblem<'a> {
             .stage1
             .filter(|_| self.first_stage.left_out.is_none());
         let first_phase = first_method.map_or(Phase::Stage2, |_| Phase::Stage1);
-        let (initial, start) = self.starting_point(&Progress::preparing(observer, first_phase))?;
-
+        let progress = Progress::preparing(observer, first_phase);
+        let (initial, start) = self.starting_point(&own, &progress)?;
+        let initial_e_percent = self.own_and_all(&own, &start);
         let stage1 = first_method
-            .map(|method| self.run_stage(method, own, start, Phase::Stage1, observer))
+            .map(|method| self.run_stage(method, &own, start, Phase::Stage1, observer))
             .transpose()?;
+        drop(own);
         let stage2_start = stage1.map_or(start, |stage| stage.parameters);
         let stage2 = options
             .stage2
@@ -207,7 +208,7 @@ impl<'a> FitProblem<'a> {
             parameters: parameters.parameters(),
             e_percent: 100.0 * fitted.error(&parameters),
             incidences: fitted.by_incidence(&parameters),
-            initial_e_percent: self.own_and_all(own, &start),
+            initial_e_percent,
             initial,
             stage1,
             stage1_left_out: self.first_stage.left_out.clone(),
@@ -236,8 +237,18 @@ impl<'a> FitProblem<'a> {
     }
 
     /// E over the readings of the first stage.
-    fn first_objective(&self) -> &Objective {
-        self.first_stage.objective.as_ref().unwrap_or(&self.all)
+    fn first_objective(&self) -> Cow<'_, Objective> {
+        let FirstStage {
+            part, objective, ..
+        } = &self.first_stage;
+        match (part, objective) {
+            (None, _) => Cow::Borrowed(&self.all),
+            (Some(_), Some(own)) => Cow::Borrowed(own),
+            (Some(count), None) => match self.all.subset(|i| i < *count) {
+                Ok(own) => Cow::Owned(own),
+                Err(_) => unreachable!("E is defined for the readings of the stage"),
+            },
+        }
     }
 
     /// Checks that the readings suffice for the stages that the options ask for.
@@ -280,17 +291,27 @@ impl<'a> FitProblem<'a> {
     /// further parameters of the model.
     fn starting_point(
         &self,
+        objective: &Objective,
         progress: &Progress<'_>,
     ) -> Result<(InitialValues, ModelParameters), Cancelled> {
         let fixed = &self.options.fixed;
         let Some(given) = self.options.start else {
-            let mut initial = initial_values(
-                self.measurements.readings(),
-                &self.first_stage.incidences,
-                self.n,
-                self.first_objective(),
-                progress,
-            )?;
+            let readings = self.measurements.readings();
+            let sections: Vec<Section> = if objective.readings().is_empty() {
+                let incidences = self.first_stage.incidences.iter();
+                let section = |incidence: &Incidence| {
+                    Section::new(incidence.psi, &incidence.readings, readings)
+                };
+                incidences.map(section).collect()
+            } else {
+                let segments = objective.segments().iter();
+                let section = |segment: &Segment| {
+                    let own = &objective.readings()[segment.rows.clone()];
+                    Section::new(segment.psi, own, readings)
+                };
+                segments.map(section).collect()
+            };
+            let mut initial = initial_values(&sections, self.n, objective, progress)?;
             initial.parameters = with_fixed(fixed, initial.parameters);
             let start = ModelParameters::three(initial.parameters, self.n);
             return Ok((initial, self.model.start(start)));
@@ -418,14 +439,11 @@ struct Refined {
 }
 
 impl FirstStage {
-    fn choose(all: &Objective, incidences: Vec<Incidence>, options: &FitOptions) -> Self {
-        let chosen = up_to(&incidences, options.stage1_limit);
+    fn choose(all: &Objective, measurements: &Measurements, options: &FitOptions) -> Self {
+        let chosen = up_to(all.segments(), |segment| segment.psi, options.stage1_limit);
         let count = chosen.len();
-        let readings: usize = chosen
-            .iter()
-            .map(|incidence| incidence.readings.len())
-            .sum();
-        let (objective, left_out) = if options.stage1.is_none() || readings == all.count() {
+        let readings: usize = chosen.iter().map(|segment| segment.readings).sum();
+        let (own, left_out) = if options.stage1.is_none() || readings == all.count() {
             (None, None)
         } else if readings <= options.reduced_model().free().len() {
             let limit_deg = in_degrees(options.stage1_limit);
@@ -437,13 +455,18 @@ impl FirstStage {
                 Err(error) => (None, Some(error.to_string())),
             }
         };
-        let mut incidences = incidences;
-        if objective.is_some() {
+        let mut incidences = if all.readings().is_empty() {
+            measurements.incidences()
+        } else {
+            Vec::new()
+        };
+        if own.is_some() {
             incidences.truncate(count);
         }
         Self {
             incidences,
-            objective,
+            part: own.is_some().then_some(count),
+            objective: own.filter(|_| options.stage2.is_none()),
             left_out,
         }
     }

@@ -43,17 +43,18 @@ pub(crate) fn fit_relatively(
 ) -> Result<Relative, FitError> {
     let searched = objective.relative(None)?;
     let search = GridSearch::new(&searched, model, progress)?;
-    let mut at = search.whole().lowest().parameters;
-    let mut weighted = searched.clone();
-    for round in 0..ROUNDS {
-        if round > 0 {
-            weighted = objective.relative(Some(&at))?;
-        }
-        at = polish(&weighted, at, model.free(), progress)?;
+    let lowest = search.whole().lowest().parameters;
+    let mut at = polish(&searched, lowest, model.free(), progress)?;
+    let mut last = None;
+    for _ in 1..ROUNDS {
+        // The weights of a large scan are freed before others take their place.
+        drop(last.take());
+        let weighted = last.insert(objective.relative(Some(&at))?);
+        at = polish(weighted, at, model.free(), progress)?;
     }
     Ok(Relative {
         at,
-        objective: weighted,
+        objective: last.unwrap_or_else(|| searched.clone()),
         searched,
         search,
     })

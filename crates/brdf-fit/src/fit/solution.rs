@@ -31,6 +31,11 @@ pub(super) struct Searched {
 }
 
 impl Solution {
+    /// The fit alone.
+    pub(crate) fn into_fit(self) -> Fit {
+        self.fit
+    }
+
     /// The grid search of the fit, or a new one where the check was left out.
     pub(crate) fn grid_search(
         &self,

@@ -11,7 +11,7 @@ use super::grid_search::GridSearch;
 use crate::model::{K1_RANGE, Model};
 use crate::objective::{Objective, ProfileSums, solve};
 use crate::progress::{Cancelled, Progress};
-use crate::scan::{Incidence, Measurement};
+use crate::scan::Measurement;
 
 /// Two readings on either side of the mirror direction are interpolated if their distance is at most
 /// this, in radians (10 deg, more than the step of a usual scan).
@@ -75,24 +75,21 @@ impl fmt::Display for InitialValues {
 
 /// The readings of one incidence in the plane of incidence, in ascending order of the signed view
 /// angle.
-struct Section {
+pub(crate) struct Section {
     psi: f64,
     /// Signed theta in radians, f_r in 1/sr.
     points: Vec<(f64, f64)>,
 }
 
 impl Section {
-    fn new(incidence: &Incidence, readings: &[Measurement]) -> Self {
-        let mut points: Vec<(f64, f64)> = incidence
-            .readings
+    /// The section of an incidence, given by the indices of its readings.
+    pub(crate) fn new(psi: f64, own: &[usize], readings: &[Measurement]) -> Self {
+        let mut points: Vec<(f64, f64)> = own
             .iter()
             .filter_map(|&i| Some((readings[i].in_plane_theta()?, readings[i].brdf)))
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Self {
-            psi: incidence.psi,
-            points,
-        }
+        Self { psi, points }
     }
 
     /// The reading exactly in the mirror direction.
@@ -136,22 +133,17 @@ fn interpolate(left: (f64, f64), right: (f64, f64), x: f64) -> f64 {
     left.1 + (right.1 - left.1) * (x - left.0) / (right.0 - left.0)
 }
 
-/// The initial values for the readings of some incidences, with the objective over the same readings.
+/// The initial values for the sections of some incidences, with the objective over the same readings.
 /// They are those of the paper's model for every family of the objective.
 pub(crate) fn initial_values(
-    readings: &[Measurement],
-    incidences: &[Incidence],
+    sections: &[Section],
     n: f64,
     objective: &Objective,
     progress: &Progress<'_>,
 ) -> Result<InitialValues, Cancelled> {
     let search = || GridSearch::new(objective, Model::Three.into(), progress);
     let fresnel = Dielectric::new(n);
-    let sections: Vec<Section> = incidences
-        .iter()
-        .map(|incidence| Section::new(incidence, readings))
-        .collect();
-    let Some((k2, kd, weights)) = weights_of_mirror_readings(&sections, &fresnel) else {
+    let Some((k2, kd, weights)) = weights_of_mirror_readings(sections, &fresnel) else {
         let point = search()?.whole().lowest();
         return Ok(InitialValues {
             parameters: point.parameters.parameters(),
@@ -159,7 +151,7 @@ pub(crate) fn initial_values(
             width: Some(WidthRoute::WholeScan),
         });
     };
-    let (k1, width) = match width_at_half_height(&sections, &fresnel, k2, kd) {
+    let (k1, width) = match width_at_half_height(sections, &fresnel, k2, kd) {
         Some(k1) => (k1, WidthRoute::HalfHeight),
         None => (
             search()?.whole().lowest().parameters.k1,
@@ -276,16 +268,17 @@ mod tests {
     use super::*;
     use crate::objective::weights::Weights;
     use crate::progress::{NoObserver, Phase};
-    use crate::scan::Measurements;
     use crate::scan::synthetic::scan;
+    use crate::scan::{Incidence, Measurements};
 
     fn initial(readings: Vec<Measurement>) -> InitialValues {
         let scan = Measurements::new("test", readings).unwrap();
         let family = brdf_core::Family::Paper;
         let objective = Objective::new(&scan, family, 1.5, &Weights::default()).unwrap();
         let progress = Progress::new(&NoObserver, Phase::Stage1);
-        let incidences = scan.incidences();
-        initial_values(scan.readings(), &incidences, 1.5, &objective, &progress).unwrap()
+        let section = |i: &Incidence| Section::new(i.psi, &i.readings, scan.readings());
+        let sections: Vec<Section> = scan.incidences().iter().map(section).collect();
+        initial_values(&sections, 1.5, &objective, &progress).unwrap()
     }
 
     fn truth() -> Parameters {

@@ -82,7 +82,7 @@ impl Deviations {
     /// zero, and where an error is larger than any number.
     pub(crate) fn of(measurements: &Measurements, fit: &Fit) -> Option<Self> {
         let brdf = AnyBrdf::new(fit.model().family(), &fit.at()).ok()?;
-        let weights = fit.options.weights.for_readings(measurements)?;
+        let weighing = fit.options.weights.weighing(measurements)?;
         let readings = measurements.readings();
         let error = |reading: &Measurement| {
             let geometry = reading.geometry().ok()?;
@@ -91,7 +91,10 @@ impl Deviations {
         let mut all = Vec::with_capacity(readings.len());
         let mut incidences = Vec::new();
         for incidence in measurements.incidences() {
-            let used = incidence.readings.iter().filter(|i| weights[**i] > 0.0);
+            let used = incidence
+                .readings
+                .iter()
+                .filter(|i| weighing.weight(**i) > 0.0);
             let mut own: Vec<f64> = used.filter_map(|&i| error(&readings[i])).collect();
             own.sort_by(f64::total_cmp);
             if let Some(median) = quantile(&own, 0.5) {

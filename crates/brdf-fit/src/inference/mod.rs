@@ -46,5 +46,5 @@ pub use warning::Warning;
 
 pub(crate) use assessment::assess_observed;
 pub(crate) use model_comparison::sufficient_model;
-pub(crate) use uncertainty::Tests;
+pub(crate) use uncertainty::{MOST_READINGS, Tests};
 pub(crate) use warning::warnings;

@@ -38,7 +38,7 @@ const UPPER_68: f64 = 0.841_344_746_068_543;
 const LARGEST_MISFIT: f64 = 0.5;
 
 /// Larger scans are represented by about this number of readings.
-const MOST_READINGS: usize = 20_000;
+pub(crate) const MOST_READINGS: usize = 20_000;
 
 const NOT_DISTINGUISHED: &str = "the readings do not distinguish the parameters";
 

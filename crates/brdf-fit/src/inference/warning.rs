@@ -11,7 +11,7 @@ use super::estimate::{Estimate, Knowledge};
 use super::hint::{Hint, hints, peaks_towards_source, reinterpretations};
 use super::noise::Noise;
 use super::physics::violation_deg;
-use super::uncertainty::Uncertainty;
+use super::uncertainty::{MOST_READINGS, Uncertainty};
 use crate::fit::{Fit, FitOptions, FitProblem, Solution, rms_percent};
 use crate::format::{counted, two_digits};
 use crate::model::{Model, Parameter};
@@ -213,7 +213,7 @@ impl fmt::Display for Warning {
 /// with reversed signs of theta is reported.
 pub(crate) fn warnings(
     measurements: &Measurements,
-    fitted: &Solution,
+    fitted: Solution,
     uncertainty: &Uncertainty,
     progress: &Progress<'_>,
 ) -> Result<Vec<Warning>, Cancelled> {
@@ -222,20 +222,22 @@ pub(crate) fn warnings(
         .into_iter()
         .map(Warning::Reading)
         .collect();
-    warnings.extend(other_angles(measurements, fitted, progress)?);
+    warnings.extend(other_angles(measurements, fit, progress)?);
     if Quality::of(fit) == Quality::Poor {
         warnings.push(Warning::NotDescribed {
             e_percent: fit.e_percent,
         });
     }
-    let reversed = theta_reversed(measurements, fitted, progress)?;
+    let reversed = theta_reversed(measurements, fit, progress)?;
     // Where the model describes the readings on neither side, the places of the peaks still tell it.
     warnings.extend(reversed.or_else(|| peaks_towards_source(measurements).map(Warning::Reading)));
     warnings.extend(uncertainty.estimates.iter().filter_map(not_determined));
     warnings.extend(larger_than_stated_errors(uncertainty));
     warnings.extend(reflectance_above_one(fit, uncertainty));
     warnings.extend(iteration_limits(fit));
-    warnings.extend(about_readings(measurements, fit));
+    // The objective of a large scan is freed before its readings are sorted.
+    let fit = fitted.into_fit();
+    warnings.extend(about_readings(measurements, &fit));
     Ok(warnings)
 }
 
@@ -264,16 +266,24 @@ fn larger_than_stated_errors(uncertainty: &Uncertainty) -> Option<Warning> {
     }
 }
 
+/// Readings that represent those of a large scan where other meanings of its angles are tried; `None`
+/// where all are tried.
+fn few_readings(measurements: &Measurements) -> Option<Measurements> {
+    let large = measurements.readings().len() > MOST_READINGS;
+    large.then(|| measurements.thinned(MOST_READINGS))
+}
+
 fn theta_reversed(
     measurements: &Measurements,
-    fitted: &Solution,
+    fit: &Fit,
     progress: &Progress<'_>,
 ) -> Result<Option<Warning>, Cancelled> {
-    let fit = &fitted.fit;
     // The format of a table defines the sides.
     if fit.e_percent <= FITS_WELL_PERCENT || measurements.is_table() {
         return Ok(None);
     }
+    let few = few_readings(measurements);
+    let measurements = few.as_ref().unwrap_or(measurements);
     let reversed: Vec<Measurement> = measurements
         .readings()
         .iter()
@@ -299,15 +309,20 @@ fn theta_reversed(
 /// describes them much better than as they were read.
 fn other_angles(
     measurements: &Measurements,
-    fitted: &Solution,
+    fit: &Fit,
     progress: &Progress<'_>,
 ) -> Result<Option<Warning>, Cancelled> {
-    let fit = &fitted.fit;
     if fit.e_percent <= EXACT_PERCENT {
         return Ok(None);
     }
+    let others = reinterpretations(measurements);
+    if others.is_empty() {
+        return Ok(None);
+    }
+    let few = few_readings(measurements);
+    let measurements = few.as_ref().unwrap_or(measurements);
     let mut best: Option<(f64, Hint)> = None;
-    for other in reinterpretations(measurements) {
+    for other in others {
         let Some(scan) = other.of(measurements) else {
             continue;
         };
@@ -447,7 +462,7 @@ mod tests {
         let progress = Progress::new(&NoObserver, Phase::Uncertainty);
         let fitted = fit_scan(&scan, &options, &progress).unwrap();
         let uncertainty = Uncertainty::of_fit(&scan, &fitted, Tests::Omitted, &progress).unwrap();
-        warnings(&scan, &fitted, &uncertainty, &progress).unwrap()
+        warnings(&scan, fitted, &uncertainty, &progress).unwrap()
     }
 
     /// A scan with 2 % of ripple, which the model fits well and no parameter follows.

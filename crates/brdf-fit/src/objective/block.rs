@@ -46,24 +46,25 @@ impl Block {
 }
 
 impl Objective {
-    /// u of each row without its Fresnel factor, for the width k1 and the exponent p.
-    pub(crate) fn shape_column(&self, k1: f64, p: f64, shape: &mut Vec<f64>) {
-        fn fill<F: FacetDistribution, S: Shadowing>(
-            objective: &Objective,
+    /// u of some rows without their Fresnel factor, for the width k1 and the exponent p.
+    pub(crate) fn shape_column(&self, k1: f64, p: f64, rows: Range<usize>, shape: &mut Vec<f64>) {
+        fn fill<'a, F: FacetDistribution, S: Shadowing>(
+            rows: impl Iterator<Item = (&'a Angles, &'a f64)>,
             facet: F,
             shadowing: S,
             shape: &mut Vec<f64>,
         ) {
             shape.clear();
-            let rows = objective.angles.iter().zip(&objective.shadowed);
             shape.extend(rows.map(|row| shape_of(facet, shadowing, row)));
         }
+        let shadowed = &self.shadowed[rows.clone()];
+        let rows = self.angles()[rows].iter().zip(shadowed);
         match self.family {
-            Family::Paper => fill(self, Ellipsoid::new(k1), VGroove, shape),
-            Family::Smith => fill(self, Ellipsoid::new(k1), Smith::new(k1), shape),
-            Family::Power => fill(self, Power::new(k1, p), VGroove, shape),
-            Family::Ggx => fill(self, Ggx::new(k1), Smith::new(k1), shape),
-            Family::Beckmann => fill(self, Beckmann::new(k1), VGroove, shape),
+            Family::Paper => fill(rows, Ellipsoid::new(k1), VGroove, shape),
+            Family::Smith => fill(rows, Ellipsoid::new(k1), Smith::new(k1), shape),
+            Family::Power => fill(rows, Power::new(k1, p), VGroove, shape),
+            Family::Ggx => fill(rows, Ggx::new(k1), Smith::new(k1), shape),
+            Family::Beckmann => fill(rows, Beckmann::new(k1), VGroove, shape),
         }
     }
 
@@ -117,6 +118,7 @@ impl Objective {
         mut take: impl FnMut(Range<usize>, &Block),
     ) {
         let dielectric = Dielectric::new(n);
+        let angles = self.angles();
         let mut start = rows.start;
         let mut block = Block::EMPTY;
         let mut fresnel = [0.0; BLOCK];
@@ -125,7 +127,7 @@ impl Objective {
             block.load(&self.measured[range.clone()], &self.diffuse[range.clone()]);
             self.fill_fresnel(&dielectric, range.clone(), &mut fresnel);
             let rows = || {
-                let angles = self.angles[range.clone()].iter();
+                let angles = angles[range.clone()].iter();
                 fresnel
                     .iter()
                     .zip(angles.zip(&self.shadowed[range.clone()]))
@@ -159,9 +161,9 @@ impl Objective {
     /// R0(gamma) of some rows; the precomputed column is used if n is its refractive index.
     fn fill_fresnel(&self, dielectric: &Dielectric, rows: Range<usize>, to: &mut [f64; BLOCK]) {
         if dielectric.n() == self.n {
-            to[..rows.len()].copy_from_slice(&self.fresnel[rows]);
+            to[..rows.len()].copy_from_slice(&self.directions.fresnel[rows]);
         } else {
-            for (value, angles) in to.iter_mut().zip(&self.angles[rows]) {
+            for (value, angles) in to.iter_mut().zip(&self.angles()[rows]) {
                 *value = dielectric.relative(angles.cos_gamma);
             }
         }

@@ -13,12 +13,14 @@
 //! columns are the same within rounding. A MERL table, in which 180 readings have one alpha and one
 //! gamma, is reduced to an eighth of its rows.
 
+use std::sync::Arc;
+
 use brdf_core::shadowing::{Shadowing as _, VGroove};
 use brdf_core::{Family, Geometry, GeometryError};
 use rayon::prelude::*;
 
 use super::error::ObjectiveError;
-use super::rows::{Angles, Objective, Segment};
+use super::rows::{Angles, Directions, Objective, Segment};
 use super::weights::Weights;
 use crate::scan::{Incidence, Measurement, Measurements};
 
@@ -96,12 +98,12 @@ impl Objective {
         if by_width || !measurements.is_table() {
             return Self::new(measurements, family, n, weights);
         }
-        let weights = weights
-            .for_readings(measurements)
+        let weighing = weights
+            .weighing(measurements)
             .ok_or(ObjectiveError::NoSigma)?;
         let readings = measurements.readings();
         let row = |i: usize, geometry: &Geometry| {
-            let w = weights[i].sqrt() * geometry.cos_theta();
+            let w = weighing.weight(i).sqrt() * geometry.cos_theta();
             let a = w / std::f64::consts::PI;
             [
                 a,
@@ -113,20 +115,21 @@ impl Objective {
         let rows = rows(&incidences, readings, row)?;
         let mut objective = Self::with_capacity(family, n, 0);
         objective.noise = None;
-        for (incidence, rows) in incidences.iter().zip(rows) {
+        let mut directions = Directions::default();
+        for (incidence, mut rows) in incidences.iter().zip(rows) {
+            directions.angles.append(&mut rows.angles);
             objective.append(incidence.psi, rows);
         }
-        objective.fresnel = objective.fresnel_column(n);
+        objective.directions = Arc::new(directions.with_fresnel(n));
         objective.normalised()
     }
 
-    /// Appends the rows of an incidence.
+    /// Appends the rows of an incidence, without their directions.
     fn append(&mut self, psi: f64, rows: Rows) {
         let start = self.len();
         self.measured.extend(rows.measured);
         self.diffuse.extend(rows.diffuse);
         self.shadowed.extend(rows.shadowed);
-        self.angles.extend(rows.angles);
         self.segments.push(Segment {
             psi,
             rows: start..self.len(),

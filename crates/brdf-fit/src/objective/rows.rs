@@ -1,7 +1,9 @@
 //! The rows of the objective: what depends on the readings, their angles and weights alone.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::ops::{Range, RangeInclusive};
+use std::sync::Arc;
 
 use brdf_core::fresnel::Dielectric;
 use brdf_core::shadowing::{Shadowing as _, VGroove};
@@ -34,11 +36,13 @@ pub const MOST_FOLDS: usize = 24;
 /// with w = sqrt(g) cos theta / sqrt(sum g (f_meas cos theta)^2). What does not depend on the
 /// parameters is computed once.
 ///
-/// The rows are sorted by incidence angle, in ascending order.
+/// The rows are sorted by incidence angle, in ascending order. What depends on their directions alone is
+/// shared with the objectives that are made from this one by other weights or by leaving out the last
+/// incidences: it takes three quarters of the memory.
 #[derive(Debug, Clone)]
 pub struct Objective {
     pub(super) family: Family,
-    /// The refractive index of the column `fresnel`.
+    /// The refractive index of the Fresnel factors.
     pub(super) n: f64,
     /// y.
     pub(super) measured: Vec<f64>,
@@ -46,17 +50,48 @@ pub struct Objective {
     pub(super) diffuse: Vec<f64>,
     /// a, multiplied by G/(cos psi cos theta) where the shadowing does not depend on k1.
     pub(super) shadowed: Vec<f64>,
-    /// R0(gamma).
-    pub(super) fresnel: Vec<f64>,
-    pub(super) angles: Vec<Angles>,
+    pub(super) directions: Arc<Directions>,
     /// w sigma, if every reading has a standard deviation.
     pub(super) noise: Option<Vec<f64>>,
     pub(super) segments: Vec<Segment>,
-    /// The index of the reading of each row; empty for condensed rows.
-    pub(super) readings: Vec<usize>,
     /// a a and a y, summed over all rows.
     pub(super) diffuse_squared: f64,
     pub(super) diffuse_measured: f64,
+}
+
+/// What depends on the directions of the rows alone. There may be more rows than those of an objective,
+/// which are then the first.
+#[derive(Debug, Default)]
+pub(super) struct Directions {
+    /// R0(gamma).
+    pub(super) fresnel: Vec<f64>,
+    pub(super) angles: Vec<Angles>,
+    /// The index of the reading of each row; empty for condensed rows.
+    pub(super) readings: Vec<usize>,
+}
+
+impl Directions {
+    /// Directions without Fresnel factors, which [`with_fresnel`](Self::with_fresnel) adds.
+    pub(super) fn with_capacity(rows: usize) -> Self {
+        Self {
+            fresnel: Vec::new(),
+            angles: Vec::with_capacity(rows),
+            readings: Vec::with_capacity(rows),
+        }
+    }
+
+    /// The same with the Fresnel factors at a refractive index.
+    pub(super) fn with_fresnel(self, n: f64) -> Self {
+        let fresnel = fresnel_column(&self.angles, n);
+        Self { fresnel, ..self }
+    }
+}
+
+/// R0(gamma) of each row at a refractive index.
+fn fresnel_column(angles: &[Angles], n: f64) -> Vec<f64> {
+    let fresnel = Dielectric::new(n);
+    let relative = |angles: &Angles| fresnel.relative(angles.cos_gamma);
+    angles.iter().map(relative).collect()
 }
 
 /// The functions of the angles of a reading that the terms of the model need.
@@ -138,17 +173,18 @@ impl Objective {
         n: f64,
         weights: &Weights,
     ) -> Result<Self, ObjectiveError> {
-        let incidences = measurements.incidences();
-        let weights = weights
-            .for_readings(measurements)
+        let weighing = weights
+            .weighing(measurements)
             .ok_or(ObjectiveError::NoSigma)?;
-        let mut objective = Self::with_capacity(family, n, weights.len());
-        for incidence in &incidences {
+        let readings = measurements.readings().len();
+        let mut objective = Self::with_capacity(family, n, readings);
+        let mut directions = Directions::with_capacity(readings);
+        for incidence in measurements.incidences() {
             let start = objective.len();
             for &i in &incidence.readings {
                 let reading = &measurements.readings()[i];
                 let geometry = reading.geometry()?;
-                let w = weights[i].sqrt() * geometry.cos_theta();
+                let w = weighing.weight(i).sqrt() * geometry.cos_theta();
                 let a = w / PI;
                 objective.measured.push(w * reading.brdf);
                 objective.diffuse.push(a);
@@ -156,8 +192,8 @@ impl Objective {
                     Family::Smith | Family::Ggx => a,
                     _ => a * VGroove.over_cosines_at(&geometry),
                 });
-                objective.angles.push(Angles::new(&geometry));
-                objective.readings.push(i);
+                directions.angles.push(Angles::new(&geometry));
+                directions.readings.push(i);
                 match (&mut objective.noise, reading.sigma) {
                     (Some(noise), Some(sigma)) => noise.push(w * sigma),
                     (noise, _) => *noise = None,
@@ -165,7 +201,7 @@ impl Objective {
             }
             objective.close_segment(incidence.psi, start);
         }
-        objective.fresnel = objective.fresnel_column(n);
+        objective.directions = Arc::new(directions.with_fresnel(n));
         objective.normalised()
     }
 
@@ -217,7 +253,8 @@ impl Objective {
 
     /// The index of the reading of each row; empty for condensed rows.
     pub(crate) fn readings(&self) -> &[usize] {
-        &self.readings
+        let rows = self.directions.readings.len().min(self.len());
+        &self.directions.readings[..rows]
     }
 
     /// w sigma of each row, if every reading has a standard deviation.
@@ -233,7 +270,7 @@ impl Objective {
     /// The root of the weight of each row in E, as a factor on f_r cos theta; 0 for a reading of zero
     /// weight.
     pub(crate) fn row_weights(&self) -> Vec<f64> {
-        let rows = self.diffuse.iter().zip(&self.angles);
+        let rows = self.diffuse.iter().zip(self.angles());
         rows.map(|(a, angles)| PI * a / angles.cos_theta).collect()
     }
 
@@ -243,12 +280,20 @@ impl Objective {
     }
 
     /// R0(gamma) of each row at the refractive index n.
-    pub(crate) fn fresnel_column(&self, n: f64) -> Vec<f64> {
-        let fresnel = Dielectric::new(n);
-        let relative = |angles: &Angles| fresnel.relative(angles.cos_gamma);
-        self.angles.iter().map(relative).collect()
+    pub(crate) fn fresnel_column(&self, n: f64) -> Cow<'_, [f64]> {
+        if n == self.n {
+            Cow::Borrowed(&self.directions.fresnel[..self.len()])
+        } else {
+            Cow::Owned(fresnel_column(self.angles(), n))
+        }
     }
 
+    /// The angles of each row.
+    pub(super) fn angles(&self) -> &[Angles] {
+        &self.directions.angles[..self.len()]
+    }
+
+    /// An objective without rows and directions.
     pub(super) fn with_capacity(family: Family, n: f64, readings: usize) -> Self {
         let column = || Vec::with_capacity(readings);
         Self {
@@ -257,11 +302,9 @@ impl Objective {
             measured: column(),
             diffuse: column(),
             shadowed: column(),
-            fresnel: column(),
-            angles: Vec::with_capacity(readings),
+            directions: Arc::default(),
             noise: Some(column()),
             segments: Vec::new(),
-            readings: Vec::with_capacity(readings),
             diffuse_squared: 0.0,
             diffuse_measured: 0.0,
         }

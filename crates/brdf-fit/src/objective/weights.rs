@@ -174,19 +174,23 @@ impl fmt::Display for Weights {
 impl Weights {
     /// The weights of all readings; `None` if 1/sigma^2 is requested and a reading has no sigma.
     pub fn for_readings(&self, measurements: &Measurements) -> Option<Vec<f64>> {
+        let weighing = self.weighing(measurements)?;
+        let readings = 0..measurements.readings().len();
+        Some(readings.map(|i| weighing.weight(i)).collect())
+    }
+
+    /// As [`for_readings`](Self::for_readings), with each weight computed where it is needed.
+    pub(crate) fn weighing<'a>(&'a self, measurements: &'a Measurements) -> Option<Weighing<'a>> {
         let readings = measurements.readings();
-        let mut weights: Vec<f64> = readings
-            .iter()
-            .map(|reading| self.of(reading))
-            .collect::<Option<_>>()?;
-        if self.by_solid_angle {
-            let angles = solid_angles(measurements);
-            weights
-                .iter_mut()
-                .zip(angles)
-                .for_each(|(weight, angle)| *weight *= angle);
+        let is_known = |reading| self.of(reading).is_some();
+        if self.errors == AssumedErrors::Stated && !readings.iter().all(is_known) {
+            return None;
         }
-        Some(weights)
+        Some(Weighing {
+            weights: self,
+            readings,
+            solid_angles: self.by_solid_angle.then(|| solid_angles(measurements)),
+        })
     }
 
     /// The weight of one reading without its solid angle; `None` if 1/sigma^2 is requested and the
@@ -214,6 +218,23 @@ impl Weights {
             source.angle(&direction(reading.theta, phi))
         };
         angle_to(reading.phi) < self.mask_source || angle_to(reading.phi + PI) < self.mask_mirror
+    }
+}
+
+/// The weights of the readings of a scan, all of which are known.
+pub(crate) struct Weighing<'a> {
+    weights: &'a Weights,
+    readings: &'a [Measurement],
+    solid_angles: Option<Vec<f64>>,
+}
+
+impl Weighing<'_> {
+    /// The weight of a reading.
+    pub(crate) fn weight(&self, reading: usize) -> f64 {
+        let own = self.weights.of(&self.readings[reading]).unwrap_or(0.0);
+        self.solid_angles
+            .as_ref()
+            .map_or(own, |angles| own * angles[reading])
     }
 }
 

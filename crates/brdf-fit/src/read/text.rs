@@ -1,6 +1,7 @@
 //! The text of a file: its bytes within limits, its lines with their numbers, and errors that name
 //! the line.
 
+use std::fmt::Display;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -155,7 +156,7 @@ impl<'a> Text<'a> {
         line: u64,
         column: &str,
         field: &Field<'_>,
-        expected: &str,
+        expected: impl Display,
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
         let problem = match parse_number(field.text, field.decimal_comma) {

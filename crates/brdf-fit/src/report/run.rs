@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::{Fit, FitError, FitOptions, fit_scan};
 use crate::inference::{Assessment, Deviations, Estimate, Quality, Uncertainty, Warning};
-use crate::inference::{Tests, assess_observed, sufficient_model, warnings};
+use crate::inference::{MOST_READINGS, Tests, assess_observed, sufficient_model, warnings};
 use crate::model::{Model, Parameter};
 use crate::objective::weights::AssumedErrors;
 use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
@@ -211,7 +211,7 @@ impl Report {
         };
         let uncertainty = Uncertainty::of_fit(measurements, &fitted, tests, &progress)?;
         let fitted_readings = options.fitted_readings(measurements);
-        self.warnings = warnings(&fitted_readings, &fitted, &uncertainty, &progress)?;
+        self.warnings = warnings(&fitted_readings, fitted, &uncertainty, &progress)?;
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
         if depth >= Depth::Assessed {
             self.deviations = Deviations::of(&fitted_readings, fit);
@@ -266,11 +266,16 @@ fn gain_of_relative_weights(
     }
     let mut options = fit.options.clone();
     options.weights.errors = AssumedErrors::Relative;
-    let fitted = match fit_scan(measurements, &options, progress) {
+    // The standard errors of a large scan are inferred from a part of its readings: so is this fit.
+    let large = measurements.readings().len() > MOST_READINGS && !measurements.is_table();
+    let few = large.then(|| measurements.thinned(MOST_READINGS));
+    let mut fitted = match fit_scan(few.as_ref().unwrap_or(measurements), &options, progress) {
         Ok(fitted) => fitted,
         Err(FitError::Cancelled) => return Err(Cancelled),
         Err(_) => return Ok(Vec::new()),
     };
+    // The errors are nevertheless those of a fit of all readings.
+    (fitted.fit.readings, fitted.fit.zero_weight) = (fit.readings, fit.zero_weight);
     let relative = Uncertainty::of_fit(measurements, &fitted, Tests::Omitted, progress)?;
     let gain = |estimate: &Estimate| {
         let other = relative.estimate(estimate.parameter)?.standard_error()?;

@@ -261,6 +261,8 @@ impl Measurements {
         files.dedup();
         let mut scans = scans.into_iter();
         let mut joined = scans.next()?;
+        let readings = scans.as_slice().iter().map(|scan| scan.readings.len());
+        joined.readings.reserve_exact(readings.sum());
         for scan in scans {
             match (&joined.refractive_index, scan.refractive_index) {
                 (Some(one), Some(other)) if *one != other => return None,
@@ -294,11 +296,23 @@ impl Measurements {
         if wavelengths.len() <= 1 {
             return vec![self];
         }
-        let mut split = vec![self.without_readings(); wavelengths.len()];
-        for reading in self.readings {
+        let index = |reading: &Measurement| {
             let of = |wavelength: &Option<f64>| by_value(wavelength, &reading.wavelength_um);
-            if let Ok(i) = wavelengths.binary_search_by(of) {
-                split[i].readings.push(reading);
+            wavelengths.binary_search_by(of).ok()
+        };
+        let mut counts = vec![0; wavelengths.len()];
+        for i in self.readings.iter().filter_map(index) {
+            counts[i] += 1;
+        }
+        // Each scan takes as much memory as its readings need, and no more.
+        let scan = |count| Self {
+            readings: Vec::with_capacity(count),
+            ..self.without_readings()
+        };
+        let mut split: Vec<Self> = counts.into_iter().map(scan).collect();
+        for reading in &self.readings {
+            if let Some(i) = index(reading) {
+                split[i].readings.push(*reading);
             }
         }
         split
@@ -335,16 +349,17 @@ impl Measurements {
     fn set_incidences(&self) -> Vec<Incidence> {
         let mut order: Vec<usize> = (0..self.readings.len()).collect();
         order.sort_by(|&a, &b| self.readings[a].psi.total_cmp(&self.readings[b].psi));
-        let mut incidences: Vec<Incidence> = Vec::new();
-        for i in order {
-            let psi = self.readings[i].psi;
-            match incidences.last_mut() {
-                Some(last) if psi - last.psi < SAME_ANGLE => last.readings.push(i),
-                _ => incidences.push(Incidence {
-                    psi,
-                    readings: vec![i],
-                }),
-            }
+        let psi = |i: usize| self.readings[i].psi;
+        let (mut incidences, mut rest) = (Vec::new(), order.as_slice());
+        while let Some(&first) = rest.first() {
+            let psi_of_first = psi(first);
+            let own = rest.partition_point(|&i| psi(i) - psi_of_first < SAME_ANGLE);
+            let (readings, others) = rest.split_at(own.max(1));
+            rest = others;
+            incidences.push(Incidence {
+                psi: psi_of_first,
+                readings: readings.to_vec(),
+            });
         }
         incidences
     }
@@ -393,7 +408,7 @@ impl Measurements {
     #[must_use]
     pub fn up_to(&self, psi: f64) -> Self {
         let incidences = self.incidences();
-        let chosen = up_to(&incidences, psi).iter();
+        let chosen = up_to(&incidences, |incidence| incidence.psi, psi).iter();
         let mut kept: Vec<usize> = chosen.flat_map(|i| i.readings.iter().copied()).collect();
         kept.sort_unstable();
         self.kept(kept)
@@ -439,11 +454,12 @@ impl Measurements {
     }
 }
 
-/// The incidences up to an angle in radians, inclusive, of incidences in ascending order.
-pub(crate) fn up_to(incidences: &[Incidence], psi: f64) -> &[Incidence] {
+/// The incidences up to an angle in radians, inclusive, of incidences in ascending order of their angle
+/// `psi_of`.
+pub(crate) fn up_to<T>(incidences: &[T], psi_of: impl Fn(&T) -> f64, psi: f64) -> &[T] {
     // Rounding of the angle must not exclude the limit itself.
     let limit = psi + 1e-9;
-    &incidences[..incidences.partition_point(|incidence| incidence.psi <= limit)]
+    &incidences[..incidences.partition_point(|incidence| psi_of(incidence) <= limit)]
 }
 
 #[expect(
@@ -493,6 +509,9 @@ mod tests {
         assert_eq!(split[0].readings().len(), 1);
         let angles: Vec<f64> = split[1].incidences().iter().map(|i| i.psi).collect();
         assert_eq!(angles, [0.1, 0.2]);
+        for scan in &split {
+            assert_eq!(scan.readings.capacity(), scan.readings.len());
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The rows of a table: a reading each, or several, and the refractive index of their wavelength.
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use brdf_core::check_refractive_index;
 
@@ -300,7 +301,7 @@ impl Row<'_> {
             AngleForm::Radians => (" in radians", is_angle),
             AngleForm::Cosine => (" as a cosine from -1 to 1", |x| x.abs() <= 1.0),
         };
-        let raw = self.value(column, &format!("{what}{unit}"), accepts)?;
+        let raw = self.value(column, format_args!("{what}{unit}"), accepts)?;
         let degrees = match form {
             AngleForm::Degrees | AngleForm::Unstated => raw,
             AngleForm::Radians => raw.to_degrees(),
@@ -318,7 +319,7 @@ impl Row<'_> {
     fn value(
         &self,
         column: usize,
-        expected: &str,
+        expected: impl fmt::Display,
         accepts: impl Fn(f64) -> bool,
     ) -> Result<f64, ReadError> {
         let name = &self.columns[column].name;

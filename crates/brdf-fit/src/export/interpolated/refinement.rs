@@ -122,7 +122,7 @@ impl<'a, F: Tabulated> Refinement<'a, F> {
                         return false;
                     }
                     Some(error) if error > largest => {
-                        (largest, limit) = (error, Some((i, channel)))
+                        (largest, limit) = (error, Some((i, channel)));
                     }
                     Some(_) => {}
                 }

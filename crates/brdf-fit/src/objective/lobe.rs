@@ -22,8 +22,8 @@ pub(crate) struct LobeRows {
 impl Objective {
     /// The rows for columns at the refractive index of the objective.
     pub(crate) fn lobe_rows(&self) -> LobeRows {
-        let column = |of: fn(&super::rows::Angles) -> f64| self.angles.iter().map(of).collect();
-        let scale = self.shadowed.iter().zip(&self.fresnel);
+        let column = |of: fn(&super::rows::Angles) -> f64| self.angles().iter().map(of).collect();
+        let scale = self.shadowed.iter().zip(&self.directions.fresnel);
         LobeRows {
             family: self.family,
             tan2_alpha: column(|angles| angles.tan2_alpha),

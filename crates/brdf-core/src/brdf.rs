@@ -96,7 +96,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     pub fn value(&self, geometry: &Geometry) -> f64 {
         let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
         let fresnel = self.fresnel.ratio_at(geometry);
-        self.with_fresnel(fresnel, psi, theta, &geometry.half())
+        self.with_fresnel(fresnel, psi, theta, geometry.cos_gamma, &geometry.half())
     }
 
     /// f_r in any kind of number, with any form of the Fresnel factor, by one division.
@@ -106,10 +106,11 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
         fresnel: Ratio<R>,
         cos_psi: R,
         cos_theta: R,
+        cos_gamma: R,
         half: &HalfVector<R>,
     ) -> R {
         let facet = self.facet.ratio(half);
-        let shadowing = self.shadowing.ratio(cos_psi, cos_theta, half);
+        let shadowing = self.shadowing.ratio(cos_psi, cos_theta, cos_gamma, half);
         let specular = (facet * shadowing * fresnel).value();
         specular.mul_add(R::of(self.k2 * FRAC_1_PI), R::of(self.kd * FRAC_1_PI))
     }

@@ -8,8 +8,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use crate::direction::{Direction, difference, divided, dot, length, sum};
-use crate::direction_pair::{DirectionPair, HalfDifference, HalfVector, Zenith};
-use crate::numeric::{exchanged_if, sin2_cos2_of_any_half};
+use crate::direction_pair::{DirectionPair, HalfVector};
+use crate::numeric::{HalfAngle, cos_quarter, half_of_azimuth};
 
 /// The largest deviation of a direction vector's length from 1.
 ///
@@ -156,10 +156,7 @@ impl Geometry {
         if !phi.is_finite() {
             return Err(GeometryError::Azimuth(phi));
         }
-        let (sin2_half_phi, cos2_half_phi) = sin2_cos2_of_any_half(phi);
-        // (theta < 0, phi) equals (|theta|, phi + pi), which exchanges the two squares.
-        let (sin2, cos2) = exchanged_if(theta < 0.0, sin2_half_phi, cos2_half_phi);
-        Ok(Self::from_half_azimuth(psi, theta.abs(), sin2, cos2))
+        Ok(Self::from_angles(psi, theta, phi))
     }
 
     /// The geometry in the plane of incidence, with the paper's signed view angle, in radians:
@@ -241,21 +238,41 @@ impl Geometry {
         Ok(Self::from_pair(&pair, pair.half.tan2_alpha(), sin2_gamma))
     }
 
-    /// The geometry of two non-negative zenith angles and the azimuth as sin^2(phi/2) and
-    /// cos^2(phi/2).
+    /// The geometry of angles in the domain. With s = (psi + theta)/2, d = (psi - theta)/2 and
+    /// a = phi/2, in which theta is not negative,
+    ///
+    /// ```text
+    /// cos^2 gamma = cos^2 d cos^2 a + cos^2 s sin^2 a
+    /// sin^2 gamma = sin^2 d cos^2 a + sin^2 s sin^2 a
+    /// tan^2 alpha = (sin^2 s cos^2 d cos^2 a + sin^2 d cos^2 s sin^2 a) / (cos^2 s cos^2 d)
+    /// ```
+    ///
+    /// The rounding errors are carried in cos^2 gamma and in the numerator and the denominator of
+    /// tan^2 alpha, because a small n multiplies that of cos^2 gamma in R0.
     #[inline(always)]
-    fn from_half_azimuth(psi: f64, theta: f64, sin2_half_phi: f64, cos2_half_phi: f64) -> Self {
-        let (source, view) = (Zenith::new(psi), Zenith::new(theta));
-        let difference = HalfDifference::of(source, view);
-        let pair = DirectionPair::from_difference(source, view, difference, cos2_half_phi);
-        let h_z = source.cos + view.cos;
-        let sines = 4.0 * source.sin * view.sin;
-        // This has one rounding less than the pair's value.
-        let tan2_alpha = difference.tan2 + sines * cos2_half_phi / (h_z * h_z);
-        // |source - view|^2, with cos psi - cos theta = -(sin psi + sin theta) tan((psi-theta)/2).
-        let sum_of_sines = source.sin + view.sin;
-        let across = difference.tan2 * (sum_of_sines * sum_of_sines + h_z * h_z);
-        Self::from_pair(&pair, tan2_alpha, 0.25 * (across + sines * sin2_half_phi))
+    fn from_angles(psi: f64, theta: f64, phi: f64) -> Self {
+        // (theta < 0, phi) equals (|theta|, phi + pi).
+        let azimuth = HalfAngle::of_azimuth(half_of_azimuth(phi), theta < 0.0);
+        let theta = theta.abs();
+        let difference = HalfAngle::of_difference(psi, theta);
+        let sum = HalfAngle::of_sum(psi, theta);
+        let near = difference.cos2 * azimuth.cos2;
+        let far = sum.cos2 * azimuth.sin2;
+        let across2 = sum.sin2 * near + difference.sin2 * far;
+        let cos2_gamma = (near + far).nearest();
+        let sin2_gamma = difference.sin2.value() * azimuth.cos2.value()
+            + sum.sin2.value() * azimuth.sin2.value();
+        let below = sum.cos2 * difference.cos2;
+        let tan2_alpha = across2.nearest() / below.nearest();
+        Self {
+            cos_psi: cos_quarter(psi),
+            cos_theta: cos_quarter(theta),
+            cos_gamma: cos2_gamma.sqrt(),
+            cos2_gamma,
+            sin2_gamma,
+            tan2_alpha,
+            sec_alpha: (1.0 + tan2_alpha).sqrt(),
+        }
     }
 
     #[inline(always)]

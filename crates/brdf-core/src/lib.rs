@@ -48,11 +48,11 @@
 //!
 //! | points | f_r | df_r/dk2 | df_r/dk1 |
 //! |---|---|---|---|
-//! | ordinary | 0.7 / 5.5 | 0.9 / 5.8 | 1.0 / 5.8 |
-//! | extreme angles | 0.8 / 5.4 | 1.0 / 6.5 | 1.1 / 7.8 |
-//! | extreme parameters | 0.8 / 7.9 | 1.0 / 7.3 | 1.2 / 9.9 |
-//! | near the specular direction | 0.8 / 5.2 | 0.9 / 5.1 | 1.0 / 5.9 |
-//! | both angles at grazing | 0.8 / 6.3 | 1.0 / 6.6 | 1.2 / 6.3 |
+//! | ordinary | 0.6 / 4.0 | 0.8 / 4.3 | 0.9 / 4.4 |
+//! | extreme angles | 0.6 / 4.3 | 0.8 / 3.4 | 0.9 / 4.1 |
+//! | extreme parameters | 0.7 / 3.4 | 0.8 / 3.9 | 0.9 / 4.6 |
+//! | near the specular direction | 0.7 / 3.2 | 0.8 / 3.5 | 0.8 / 4.8 |
+//! | both angles at grazing | 0.7 / 3.9 | 0.8 / 4.1 | 0.9 / 4.2 |
 //!
 //! The expressions of a textbook, evaluated as printed, have on the same points:
 //!

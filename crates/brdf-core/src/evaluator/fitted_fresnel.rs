@@ -85,7 +85,10 @@ impl<F: FacetDistribution, S: Shadowing, X: FresnelFactor> Formula
         let half = &pair.half;
         let fresnel = self.fresnel.ratio(half.length, half.length2);
         let (psi, theta) = (pair.cos_psi, pair.cos_theta);
-        pair.if_above_surface(self.brdf.with_fresnel(fresnel, psi, theta, half))
+        let value = self
+            .brdf
+            .with_fresnel(fresnel, psi, theta, half.length, half);
+        pair.if_above_surface(value)
     }
 }
 

@@ -21,7 +21,8 @@ impl<F: FacetDistribution, S: Shadowing> Formula for MicrofacetBrdf<F, S> {
     fn at<R: Real>(&self, pair: &DirectionPair<R>) -> R {
         let half = &pair.half;
         let fresnel = self.fresnel().ratio(half.length, half.length2);
-        let value = self.with_fresnel(fresnel, pair.cos_psi, pair.cos_theta, half);
+        let (psi, theta) = (pair.cos_psi, pair.cos_theta);
+        let value = self.with_fresnel(fresnel, psi, theta, half.length, half);
         pair.if_above_surface(value)
     }
 }

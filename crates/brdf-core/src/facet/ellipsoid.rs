@@ -32,9 +32,17 @@ impl Ellipsoid {
         Self {
             k1,
             k1_squared: k1 * k1,
-            reciprocal_k1_squared: 1.0 / (k1 * k1),
+            reciprocal_k1_squared: reciprocal_square(k1),
         }
     }
+}
+
+/// 1/x^2, rounded once: the rounding errors of 1/x and of its square are carried.
+fn reciprocal_square(x: f64) -> f64 {
+    let reciprocal = 1.0 / x;
+    let square = reciprocal * reciprocal;
+    let missing = (-x).mul_add(reciprocal, 1.0);
+    square + (reciprocal.mul_add(reciprocal, -square) + 2.0 * square * missing)
 }
 
 impl FacetDistribution for Ellipsoid {

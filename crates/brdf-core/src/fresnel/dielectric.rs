@@ -2,7 +2,7 @@
 
 use super::factor::FresnelFactor;
 use crate::geometry::Geometry;
-use crate::numeric::{Ratio, Real};
+use crate::numeric::{Carried, Ratio, Real};
 
 /// The unpolarised Fresnel reflectance of a facet with the real refractive index n relative to air.
 ///
@@ -17,7 +17,15 @@ use crate::numeric::{Ratio, Real};
 /// gives the limit instead of 0/0. R0 is 1 at gamma = 0 and approaches 1/R(0) at grazing.
 ///
 /// Because the fourth power multiplies rounding errors by four, (g + c)^2 is evaluated as
-/// n^2 - 1 + 2 c (g + c), which has fewer of them, and n^2 - 1 is rounded once.
+/// n^2 - 1 + 2 c (g + c), which has fewer of them, and n^2 - 1 is rounded once. For one geometry the
+/// same function is evaluated from c^2 and c g, with
+///
+/// ```text
+/// R0(gamma) = N ((n + 1)^2/D)^2,   N = c^2 g^2 + (1 - c^2)^2,   D = (g + c)^2 (1 + c g - c^2)
+/// ```
+///
+/// in which the rounding errors of D are carried. Next to n = 1, where R0 falls as 1/c^4, this has
+/// half of the error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dielectric {
     n: f64,
@@ -31,11 +39,10 @@ impl Dielectric {
     ///
     /// [`ThreeParameterBrdf::new`](crate::ThreeParameterBrdf::new) checks it.
     pub fn new(n: f64) -> Self {
-        let n_plus_1_squared = n.mul_add(n, 2.0 * n + 1.0);
         Self {
             n,
             n2_minus_1: n.mul_add(n, -1.0),
-            half_fourth_power: 0.5 * (n_plus_1_squared * n_plus_1_squared),
+            half_fourth_power: 0.5 * fourth_power_of_successor(n),
         }
     }
 
@@ -61,11 +68,20 @@ impl Dielectric {
         self.ratio(cos_gamma, cos_gamma * cos_gamma).value()
     }
 
-    /// R0(gamma) of a geometry, which contains the square of the cosine too: its root and that of the
-    /// Fresnel equations then do not depend on each other.
+    /// R0(gamma) of a geometry, which contains the square of the cosine too. The rounding errors in D,
+    /// which the square doubles, are carried.
     #[inline]
     pub fn ratio_at(&self, geometry: &Geometry) -> Ratio<f64> {
-        self.ratio(geometry.cos_gamma, geometry.cos2_gamma)
+        let cos2 = geometry.cos2_gamma;
+        let product2 = cos2 * (self.n2_minus_1 + cos2);
+        let product = product2.sqrt();
+        let square = Carried::sum(cos2, product).doubled() + self.n2_minus_1;
+        let above_one = Carried::sum(product, -cos2);
+        let sin2 = 1.0 - cos2;
+        Ratio {
+            numerator: 2.0 * self.half_fourth_power * (sin2 * sin2 + product2),
+            denominator: (square * (above_one + 1.0)).squared(),
+        }
     }
 
     /// The derivative of R0(gamma) with respect to n, for cos gamma in (0, 1] and its sin^2 gamma.
@@ -132,6 +148,15 @@ struct Terms<R> {
     numerator: R,
     /// The denominator of b multiplied by g + c: c (n^2 - 1) + g + c.
     denominator: R,
+}
+
+/// (n + 1)^4, rounded once: the rounding errors of n + 1 and of its square are carried.
+fn fourth_power_of_successor(n: f64) -> f64 {
+    let sum = n + 1.0;
+    let square = sum * sum;
+    let rest = sum.mul_add(sum, -square) + 2.0 * sum * ((n - sum) + 1.0);
+    let fourth = square * square;
+    fourth + (square.mul_add(square, -fourth) + 2.0 * square * rest)
 }
 
 #[cfg(test)]

@@ -5,6 +5,8 @@
 //! many points at once in `f64` and `f32`. Whoever adds a facet distribution or a shadowing
 //! function needs these types; whoever only evaluates the model does not.
 
+mod carried;
+mod half_angle;
 mod quadrature;
 mod ratio;
 mod real;
@@ -13,8 +15,10 @@ mod trigonometry;
 pub use ratio::Ratio;
 pub use real::{Elementary, Fused, Primitive, Real};
 
+pub(crate) use carried::Carried;
+pub(crate) use half_angle::{HalfAngle, half_of_azimuth};
 pub(crate) use quadrature::integrate;
 pub(crate) use real::horner;
 pub(crate) use trigonometry::{
-    exchanged_if, sin_cos_quarter, sin_eighth, sin2_cos2_of_any_half, sin2_cos2_of_half,
+    cos_quarter, sin_cos_quarter, sin_eighth, sin2_cos2_of_any_half, sin2_cos2_of_half,
 };

@@ -10,14 +10,20 @@ pub trait Shadowing: Copy + Send + Sync {
     const DEPENDS_ON_WIDTH: bool;
 
     /// G / (cos psi cos theta), which stays finite as one of the two angles approaches 90 deg.
-    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Ratio<R>;
+    fn ratio<R: Real>(
+        &self,
+        cos_psi: R,
+        cos_theta: R,
+        cos_gamma: R,
+        half: &HalfVector<R>,
+    ) -> Ratio<R>;
 
     /// G / (cos psi cos theta) for one pair of directions.
     #[inline]
     fn over_cosines(&self, cos_psi: f64, cos_theta: f64, tan2_alpha: f64) -> f64 {
-        // No shadowing function uses the length itself.
-        let half = HalfVector::from_tilt(tan2_alpha, f64::NAN);
-        self.ratio(cos_psi, cos_theta, &half).value()
+        let half = HalfVector::from_tilt(tan2_alpha, (1.0 + tan2_alpha).sqrt());
+        let cos_gamma = 0.5 * (cos_psi + cos_theta) * half.length;
+        self.ratio(cos_psi, cos_theta, cos_gamma, &half).value()
     }
 
     /// The derivative of G / (cos psi cos theta) with respect to k1.
@@ -28,7 +34,9 @@ pub trait Shadowing: Copy + Send + Sync {
     /// [`over_cosines`](Self::over_cosines) for a geometry.
     #[inline]
     fn over_cosines_at(&self, geometry: &Geometry) -> f64 {
-        self.over_cosines(geometry.cos_psi, geometry.cos_theta, geometry.tan2_alpha)
+        let (psi, theta) = (geometry.cos_psi, geometry.cos_theta);
+        self.ratio(psi, theta, geometry.cos_gamma, &geometry.half())
+            .value()
     }
 
     /// G for a geometry.

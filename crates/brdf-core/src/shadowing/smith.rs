@@ -42,7 +42,7 @@ impl Shadowing for Smith {
     const DEPENDS_ON_WIDTH: bool = true;
 
     #[inline]
-    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, _: &HalfVector<R>) -> Ratio<R> {
+    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, _: R, _: &HalfVector<R>) -> Ratio<R> {
         let (_, source) = self.rough_and_root(cos_psi);
         let (_, view) = self.rough_and_root(cos_theta);
         Ratio {

@@ -10,13 +10,14 @@ use crate::numeric::{Ratio, Real};
 /// G = min(1, 2 cos alpha cos theta / cos gamma, 2 cos alpha cos psi / cos gamma)
 /// ```
 ///
-/// With the sum h of the two unit vectors, 2 cos alpha / cos gamma = `h_z` / cos^2 gamma and
-/// cos^2 gamma = (`h_z` / (2 cos alpha))^2, so that
+/// It is evaluated as
 ///
 /// ```text
 /// G / (cos psi cos theta) = 1 / max(cos psi cos theta,
-///                                   h_z sec^2 alpha max(cos psi, cos theta) / 4)
+///                                   sec alpha cos gamma max(cos psi, cos theta) / 2)
 /// ```
+///
+/// so that sec alpha and its rounding error cancel in the product with the paper's facet distribution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VGroove;
 
@@ -24,13 +25,17 @@ impl Shadowing for VGroove {
     const DEPENDS_ON_WIDTH: bool = false;
 
     #[inline]
-    fn ratio<R: Real>(&self, cos_psi: R, cos_theta: R, half: &HalfVector<R>) -> Ratio<R> {
-        let h_z = cos_psi + cos_theta;
-        let along2 = half.along * half.along;
-        let open = along2 * (cos_psi * cos_theta);
-        let blocked = R::of(0.25) * h_z * half.length2 * cos_psi.max(cos_theta);
+    fn ratio<R: Real>(
+        &self,
+        cos_psi: R,
+        cos_theta: R,
+        cos_gamma: R,
+        half: &HalfVector<R>,
+    ) -> Ratio<R> {
+        let open = half.along * (cos_psi * cos_theta);
+        let blocked = half.length * (R::of(0.5) * cos_gamma * cos_psi.max(cos_theta));
         Ratio {
-            numerator: along2,
+            numerator: half.along,
             denominator: open.max(blocked),
         }
     }

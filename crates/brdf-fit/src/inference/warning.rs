@@ -532,7 +532,8 @@ mod tests {
         let readings = rippled(0.1, 0.1, 0.02);
         let flank = readings
             .into_iter()
-            .filter(|r| r.psi < 0.4 && r.theta > 0.0)
+            // A view at 5 deg from the normal is at the limit of the tilt, on a side that rounding decides.
+            .filter(|r| r.psi < 0.4 && r.theta > 0.1)
             .collect();
         let all = warnings_of(flank, |_| ());
         assert!(

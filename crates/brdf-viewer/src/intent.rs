@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use brdf_fit::Convention;
-use brdf_fit::plot::View;
+use brdf_fit::plot::{View, Zoom};
 use brdf_fit::{Model, Parameter};
 
 use crate::output_kind::OutputKind;
@@ -17,6 +17,8 @@ use crate::state::parameters::EditedParameters;
 pub enum Intent {
     /// Carry out a command, which has no arguments.
     Command(Command),
+    /// A part of the plot is shown, or all of it.
+    Zoomed(Option<Zoom>),
     /// Open files: scans, or fits as JSON.
     Open(Vec<PathBuf>),
     /// Open the content of a file: its name and its bytes.

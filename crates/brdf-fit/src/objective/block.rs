@@ -243,7 +243,7 @@ pub(super) fn derivatives_for(free: &[Parameter]) -> [bool; 3] {
 
 /// A scalar product in four independent running sums: fast, and the same on every processor.
 #[inline]
-pub(super) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
+pub(crate) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
     let mut sums = [0.0; 4];
     for (x, y) in x.as_chunks::<4>().0.iter().zip(y.as_chunks::<4>().0) {
         for lane in 0..4 {

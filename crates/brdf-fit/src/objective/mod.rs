@@ -15,7 +15,7 @@ mod subset;
 pub(crate) mod weights;
 
 pub(crate) use best_weights::{solve, solve_for};
-pub(crate) use block::{BLOCK, dot_of};
+pub(crate) use block::{BLOCK, dot, dot_of};
 pub use error::ObjectiveError;
 pub use evaluation::NormalEquations;
 pub(crate) use evaluation::{ProfileSums, ROUNDING};

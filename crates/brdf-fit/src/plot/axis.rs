@@ -72,6 +72,32 @@ impl Axis {
         })
     }
 
+    /// The part of the axis between two values, with labels of its own; the axis itself where the part is
+    /// empty, or not positive and logarithmic.
+    pub(super) fn within(&self, [low, high]: [f64; 2]) -> Self {
+        let ticks = if self.is_logarithmic {
+            (low > SMALLEST)
+                .then(|| ticks::logarithmic(low, high))
+                .flatten()
+        } else {
+            Some(ticks::linear(low, high, MOST_STEPS))
+        };
+        let Some(mut ticks) = ticks.filter(|_| low < high && high <= LARGEST) else {
+            return self.clone();
+        };
+        ticks
+            .labelled
+            .retain(|tick| (low..=high).contains(&tick.value));
+        ticks
+            .unlabelled
+            .retain(|value| (low..=high).contains(value));
+        (ticks.low, ticks.high) = (low, high);
+        Self {
+            is_logarithmic: self.is_logarithmic,
+            ticks,
+        }
+    }
+
     /// The position of a value as a fraction of the axis: 0 at its low end, 1 at its high end.
     pub(super) fn fraction(&self, value: f64) -> f64 {
         let (low, high) = (self.low(), self.high());

@@ -1,6 +1,6 @@
 //! What a figure is drawn on: lines, areas, marks and text, in the units of the figure.
 
-use super::palette::{MarkShape, Rgb};
+use super::palette::{Ground, MarkShape, Rgb};
 use super::style::{INK, SIZE};
 use super::svg::{Anchor, Coordinates, Document, Paint, Text};
 
@@ -20,11 +20,11 @@ pub(super) struct Canvas {
     document: Document,
 }
 
-/// The SVG of what `draw` draws on a white ground, with `footer` units more below the figure.
-pub(super) fn render(footer: u32, draw: impl FnOnce(&mut Canvas)) -> String {
+/// The SVG of what `draw` draws on a ground, with `footer` units more below the figure.
+pub(super) fn render(footer: u32, ground: Ground, draw: impl FnOnce(&mut Canvas)) -> String {
     let size = (SIZE.0, SIZE.1 + footer);
     let mut canvas = Canvas {
-        document: Document::new(size, SUBDIVISIONS),
+        document: Document::new(size, SUBDIVISIONS, ground),
     };
     draw(&mut canvas);
     canvas.document.finish()
@@ -162,7 +162,7 @@ mod tests {
     #[test]
     fn any_name_of_a_sample_gives_valid_xml() {
         let name = "a<b>&\"c\"'\u{1}\u{fffe}\u{7f} \u{3bb}";
-        let svg = render(0, |canvas| {
+        let svg = render(0, Ground::Light, |canvas| {
             canvas.text(name, (10.0, 10.0), 12.0, Anchor::Start);
         });
         let tree = resvg::usvg::Tree::from_str(&svg, &resvg::usvg::Options::default()).unwrap();

@@ -57,6 +57,11 @@ impl Area {
     }
 }
 
+/// Points with x and y exchanged.
+fn swapped(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    points.into_iter().map(|(x, y)| (y, x)).collect()
+}
+
 /// Two axes and the area between them.
 pub(super) struct Frame {
     pub(super) x: Axis,
@@ -160,8 +165,11 @@ impl Frame {
         canvas.line(&[self.at(0.0, y), self.at(1.0, y)], paint, 1.0);
     }
 
-    /// A dashed vertical line across the area at a value of x.
+    /// A dashed vertical line across the area at a value of x, if it is on the axis.
     pub(super) fn dashed_vertical(&self, canvas: &mut Canvas, x: f64, paint: impl Into<Paint>) {
+        if !self.x.contains(x) {
+            return;
+        }
         let x = self.x.fraction(x);
         canvas.dashed_line(self.at(x, 0.0), self.at(x, 1.0), paint, 1.0);
     }
@@ -172,7 +180,7 @@ impl Frame {
         canvas.dashed_line(self.at(0.0, y), self.at(1.0, y), paint, 1.0);
     }
 
-    /// A line through values, clipped to the vertical axis.
+    /// A line through values, clipped to both axes.
     pub(super) fn line(
         &self,
         canvas: &mut Canvas,
@@ -184,16 +192,19 @@ impl Frame {
         let fractions: Vec<(f64, f64)> = values
             .map(|(x, y)| (self.x.fraction(x), self.y.fraction(y)))
             .collect();
-        for piece in clip(&fractions) {
-            let points: Vec<Point> = piece.into_iter().map(|(x, y)| self.at(x, y)).collect();
-            canvas.line(&points, paint, width);
+        for piece in clip(&swapped(fractions)) {
+            for piece in clip(&swapped(piece)) {
+                let points: Vec<Point> = piece.into_iter().map(|(x, y)| self.at(x, y)).collect();
+                canvas.line(&points, paint, width);
+            }
         }
     }
 
     /// The area between two values of y at each x, clipped to the vertical axis.
     pub(super) fn band(&self, canvas: &mut Canvas, values: &[(f64, [f64; 2])], colour: Rgb) {
         let edge = |i: usize| {
-            values.iter().map(move |&(x, y)| {
+            let values = values.iter().filter(|(x, _)| self.x.contains(*x));
+            values.map(move |&(x, y)| {
                 self.at(self.x.fraction(x), self.y.fraction(y[i]).clamp(0.0, 1.0))
             })
         };

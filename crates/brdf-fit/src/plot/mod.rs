@@ -56,5 +56,5 @@ pub use folder::{FolderError, PAGE, figure_files, report_figures, write_folder};
 pub use palette::{FAMILIES, Ground, MarkShape, colour, family_colour, mark};
 pub use selection::{Selection, Trace};
 pub use theory_csv::write_theory_alone;
-pub use view::{Layout, Quantity, Scale, View};
+pub use view::{Layout, Quantity, Scale, View, Zoom};
 pub use write::write_figures;

@@ -8,9 +8,10 @@ pub(super) const FEW_CURVES: usize = FEW.len();
 pub const FAMILIES: usize = 6;
 
 /// The background of the colours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Ground {
     /// Paper, or a light window.
+    #[default]
     Light,
     /// A dark window.
     Dark,

@@ -18,6 +18,11 @@ pub(super) const EMPHASIS: Rgb = [213, 94, 0];
 /// The page.
 pub(super) const WHITE: Rgb = [255, 255, 255];
 
+/// The grey of a dark page, as of the dark windows of the viewer.
+pub(super) const DARK_PAGE: u8 = 27;
+/// The grey in place of black on a dark page.
+pub(super) const LIGHT_INK: u8 = 250;
+
 /// Opacity of an error band.
 pub(super) const BAND: f64 = 0.22;
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use brdf_core::AnyBrdf;
 
 use super::curves::{Curve, FIGURE_COLUMNS, Reading, StandardError, curves};
-use super::palette::{FEW_CURVES, Ground, MarkShape, Rgb, colour, mark};
+use super::palette::{FEW_CURVES, MarkShape, Rgb, colour, mark};
 use super::selection::{Selection, evenly};
 use super::view::View;
 use crate::format::counted;
@@ -96,7 +96,7 @@ impl Curves {
         let styled = curves.into_iter().enumerate().map(|(i, curve)| Styled {
             curve,
             sample: source.name.map(str::to_owned),
-            colour: colour(source.family, i, count, Ground::Light),
+            colour: colour(source.family, i, count, self.view.ground),
             mark: mark(source.family, i),
         });
         self.all.extend(styled);

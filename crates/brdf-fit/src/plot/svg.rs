@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
-use super::palette::Rgb;
+use super::palette::{Ground, Rgb};
+use super::style::{DARK_PAGE, LIGHT_INK, WHITE};
 
 /// A position in whole coordinates, from the upper left corner.
 pub(super) type Coordinates = (i32, i32);
@@ -18,6 +19,22 @@ impl Paint {
     /// A colour through which the ground shows; an opacity of 1 covers it.
     pub(super) fn translucent(colour: Rgb, opacity: f64) -> Self {
         Self { colour, opacity }
+    }
+
+    /// The paint on a ground: greys are inverted on a dark one, from [`DARK_PAGE`] for white to nearly
+    /// white for black.
+    fn on(self, ground: Ground) -> Self {
+        let [red, green, blue] = self.colour;
+        if ground == Ground::Light || red != green || green != blue {
+            return self;
+        }
+        let range = u16::from(LIGHT_INK - DARK_PAGE);
+        let above = u16::from(u8::MAX - red) * range / u16::from(u8::MAX);
+        let grey = DARK_PAGE + u8::try_from(above).unwrap_or(LIGHT_INK - DARK_PAGE);
+        Self {
+            colour: [grey; 3],
+            ..self
+        }
     }
 }
 
@@ -70,17 +87,21 @@ pub(super) struct Text<'a> {
 /// A document that is being written.
 pub(super) struct Document {
     text: String,
+    ground: Ground,
 }
 
 impl Document {
-    /// A white page of `width` x `height` pixels, each of which is `subdivisions` coordinates long.
-    pub(super) fn new((width, height): (u32, u32), subdivisions: u32) -> Self {
+    /// A page of `width` x `height` pixels, each of which is `subdivisions` coordinates long. The greys of
+    /// what is drawn are those of a white page; on a dark one they are inverted.
+    pub(super) fn new((width, height): (u32, u32), subdivisions: u32, ground: Ground) -> Self {
         let (right, bottom) = (width * subdivisions, height * subdivisions);
+        let page = Hexadecimal(Paint::from(WHITE).on(ground));
         Self {
+            ground,
             text: format!(
-                r##"<svg width="{width}" height="{height}" viewBox="0 0 {right} {bottom}" xmlns="http://www.w3.org/2000/svg">
-<rect x="0" y="0" width="{right}" height="{bottom}" opacity="1" fill="#FFFFFF" stroke="none"/>
-"##
+                r#"<svg width="{width}" height="{height}" viewBox="0 0 {right} {bottom}" xmlns="http://www.w3.org/2000/svg">
+<rect x="0" y="0" width="{right}" height="{bottom}" opacity="1" fill="{page}" stroke="none"/>
+"#
             ),
         }
     }
@@ -98,7 +119,7 @@ impl Document {
         paint: Paint,
         width: u32,
     ) {
-        let (opacity, stroke) = (Opacity(paint), Hexadecimal(paint));
+        let (opacity, stroke) = (Opacity(paint), Hexadecimal(paint.on(self.ground)));
         self.push(format_args!(
             r#"<polyline fill="none" {opacity} stroke="{stroke}" stroke-width="{width}" "#
         ));
@@ -107,14 +128,14 @@ impl Document {
 
     /// A filled polygon.
     pub(super) fn polygon(&mut self, corners: impl Iterator<Item = Coordinates>, paint: Paint) {
-        let (opacity, fill) = (Opacity(paint), Hexadecimal(paint));
+        let (opacity, fill) = (Opacity(paint), Hexadecimal(paint.on(self.ground)));
         self.push(format_args!(r#"<polygon {opacity} fill="{fill}" "#));
         self.push_points(corners);
     }
 
     /// A filled circle.
     pub(super) fn circle(&mut self, (x, y): Coordinates, radius: u32, paint: Paint) {
-        let (opacity, fill) = (Opacity(paint), Hexadecimal(paint));
+        let (opacity, fill) = (Opacity(paint), Hexadecimal(paint.on(self.ground)));
         self.push(format_args!(
             r#"<circle cx="{x}" cy="{y}" r="{radius}" {opacity} fill="{fill}" stroke="none" stroke-width="1"/>
 "#
@@ -124,7 +145,8 @@ impl Document {
     /// A line of text, in the reader's own sans-serif typeface.
     pub(super) fn text(&mut self, text: &Text) {
         let ((x, y), size) = (text.position, text.size);
-        let (opacity, fill) = (Opacity(text.paint), Hexadecimal(text.paint));
+        let paint = text.paint.on(self.ground);
+        let (opacity, fill) = (Opacity(paint), Hexadecimal(paint));
         let anchor = match text.anchor {
             Anchor::Start => "start",
             Anchor::Middle | Anchor::MiddleUpwards => "middle",
@@ -179,7 +201,7 @@ mod tests {
     #[test]
     fn every_element_has_its_form() {
         let black = Paint::from([0; 3]);
-        let mut document = Document::new((3, 2), 10);
+        let mut document = Document::new((3, 2), 10, Ground::Light);
         document.polyline([(1, 2), (-3, 4)].into_iter(), black, 7);
         let faint = Paint::translucent([30, 0, 255], 0.25);
         document.polygon([(0, 0), (1, 0), (0, 1)].into_iter(), faint);

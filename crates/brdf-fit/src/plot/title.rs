@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::canvas::{Canvas, render};
+use super::palette::Ground;
 use super::style::{LINE_SPACING, SIZE, TEXT, TITLE};
 use super::svg::Anchor;
 use super::text::{four_digits, shortened};
@@ -27,6 +28,8 @@ pub(super) struct Title {
     pub(super) theory: String,
     /// Where there are several samples, a line for each.
     pub(super) samples: Vec<String>,
+    /// The background of the figure.
+    pub(super) ground: Ground,
 }
 
 impl Title {
@@ -43,6 +46,7 @@ impl Title {
             ),
             theory: format!("model {model}, {}{}", model.description(), conditions(fit)),
             samples: Vec::new(),
+            ground: Ground::Light,
         }
     }
 
@@ -51,7 +55,7 @@ impl Title {
         let lines = u32::try_from(self.samples.len()).unwrap_or(0);
         // Half a line more keeps the last line off the edge.
         let footer = if lines > 0 { 20 * lines + 10 } else { 0 };
-        render(footer, |canvas| {
+        render(footer, self.ground, |canvas| {
             self.draw(canvas);
             draw(canvas);
         })

@@ -1,5 +1,6 @@
 //! A view of the data: the quantity, its axis, the plane and the arrangement of a plot.
 
+use super::palette::Ground;
 use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
@@ -60,6 +61,21 @@ pub struct View {
     /// sense of [`Side`]. 0 is the plane of incidence. In JSON it is in degrees, as `azimuth_deg`.
     #[serde(rename = "azimuth_deg", with = "as_degrees")]
     pub azimuth: f64,
+    /// The part that is shown; `None` is all. It is not stored, and the polar form shows all.
+    #[serde(skip)]
+    pub zoom: Option<Zoom>,
+    /// The background of a figure. It is not stored.
+    #[serde(skip)]
+    pub ground: Ground,
+}
+
+/// A part of a plot: the ranges of its axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zoom {
+    /// The signed view angle in degrees, in the sense of the view.
+    pub theta_deg: [f64; 2],
+    /// The quantity of the view.
+    pub value: [f64; 2],
 }
 
 impl Quantity {

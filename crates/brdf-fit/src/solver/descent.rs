@@ -4,7 +4,7 @@ use brdf_core::ModelParameters;
 use nalgebra::{SMatrix, SVector};
 
 use crate::model::{Parameter, ReducedModel};
-use crate::objective::{BLOCK, Objective, ProfileSums, solve_for};
+use crate::objective::{BLOCK, Objective, ProfileSums, dot, solve_for};
 
 /// The nonlinear parameters: k1, n and p.
 const NONLINEAR: [Parameter; 3] = [Parameter::K1, Parameter::N, Parameter::P];
@@ -58,27 +58,27 @@ impl Products {
         rows: Rows<'_>,
     ) -> Self {
         let mut products = Self::default();
+        let used = [true, true, derivatives[0], derivatives[1], derivatives[2]];
         objective.for_blocks(at, derivatives, 0..objective.len(), |range, block| {
-            let mut columns: [&[f64]; 5] =
+            // Rows beyond the last one are zero, as they are in the block.
+            let mut y = [0.0; BLOCK];
+            y[..range.len()].copy_from_slice(&rows.y[range.clone()]);
+            let mut columns: [&[f64; BLOCK]; 5] =
                 [&block.u, &block.a, &block.by[0], &block.by[1], &block.by[2]];
             let mut own = [[0.0; BLOCK]; 5];
             if let Some(factors) = rows.factors {
-                for (own, column) in own.iter_mut().zip(columns) {
-                    let factors = &factors[range.clone()];
-                    for ((own, x), factor) in own.iter_mut().zip(column).zip(factors) {
+                for i in (0..5).filter(|i| used[*i]) {
+                    let scaled = columns[i].iter().zip(&factors[range.clone()]);
+                    for (own, (x, factor)) in own[i].iter_mut().zip(scaled) {
                         *own = x * factor;
                     }
                 }
-                columns = own.each_ref().map(|own| &own[..]);
+                columns = own.each_ref();
             }
-            let y = &rows.y[range.clone()];
-            let used = [true, true, derivatives[0], derivatives[1], derivatives[2]];
             for i in (0..5).filter(|i| used[*i]) {
-                let column = &columns[i][..y.len()];
-                products.measured[i] += crate::objective::dot_of(column, y);
+                products.measured[i] += dot(columns[i], &y);
                 for j in (0..=i).filter(|j| used[*j]) {
-                    products.columns[i][j] +=
-                        crate::objective::dot_of(column, &columns[j][..y.len()]);
+                    products.columns[i][j] += dot(columns[i], columns[j]);
                 }
             }
         });

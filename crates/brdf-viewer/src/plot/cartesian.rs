@@ -1,7 +1,7 @@
 //! Cartesian plots against the signed view angle: all incidences in one plot, or one plot per
 //! incidence, with optional residuals below.
 
-use brdf_fit::plot::{Layout, Reading, Theory, View};
+use brdf_fit::plot::{Layout, Reading, Theory, View, Zoom};
 use egui::{Align2, Id, Rangef, TextStyle, Ui, Vec2, vec2};
 use egui_plot::{AxisHints, Plot, PlotResponse};
 
@@ -12,6 +12,7 @@ use super::context::{DrawnCurve, PlotContext};
 use super::hover::{show_residuals, show_values};
 use super::items::{self, Drawing};
 use super::navigation::navigate;
+use crate::intent::Intent;
 
 /// The fraction of the height that the residuals occupy.
 const RESIDUALS: f32 = 0.3;
@@ -251,12 +252,17 @@ fn show_values_plot(
         .include_y(end(context.range.1));
     let plot = reset_on_demand(ui, context.state, placement.name, plot);
     let home = [[-90.0, 90.0], [end(context.range.0), end(context.range.1)]];
+    let mut shows_all = true;
     let response = plot.show(ui, |plot_ui| {
         navigate(plot_ui, home);
         for (i, drawn) in curves.iter().enumerate() {
             plot_ui.add(curve_item(format!("curve {i}"), view, axis, drawn));
         }
+        shows_all = plot_ui.auto_bounds().any();
     });
+    if view.layout == Layout::Together {
+        tell_zoom(context, &response, shows_all);
+    }
     let position = |theta_deg: f64, value: f64| Some([theta_deg, axis.position(value)?]);
     show_values(&response, view, curves, position);
     let of_reading = |reading: &Reading| position(reading.theta_deg, reading.value);
@@ -265,6 +271,19 @@ fn show_values_plot(
         show_panel_title(ui, view, &response, curves);
     }
     describe(&response, "BRDF plot", curves);
+}
+
+/// Tells the state which part of the plot is shown, for figures that are exported.
+fn tell_zoom(context: &PlotContext, response: &PlotResponse<()>, shows_all: bool) {
+    let bounds = response.transform.bounds();
+    let value = |i: usize| context.axis.value([bounds.min()[1], bounds.max()[1]][i]);
+    let zoom = (!shows_all).then(|| Zoom {
+        theta_deg: [bounds.min()[0], bounds.max()[0]],
+        value: [value(0), value(1)],
+    });
+    if context.state.zoom != zoom {
+        context.request(Intent::Zoomed(zoom));
+    }
 }
 
 /// A curve with its mirror direction, its band and its readings.

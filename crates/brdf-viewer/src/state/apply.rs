@@ -18,6 +18,7 @@ impl State {
     pub fn apply(&mut self, intent: Intent) {
         match intent {
             Intent::Command(command) => self.command(command),
+            Intent::Zoomed(zoom) => self.zoom = zoom,
             Intent::Open(paths) => self.open(paths),
             Intent::OpenBytes(name, bytes) => self.open_bytes(name, bytes),
             Intent::OpenBuiltIn(entry) => self.open_built_in(entry),

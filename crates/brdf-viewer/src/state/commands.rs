@@ -129,7 +129,7 @@ impl State {
     }
 
     /// Whether the theme is dark, by the choice of the user or else of the system.
-    fn is_dark(&self) -> bool {
+    pub(super) fn is_dark(&self) -> bool {
         self.interface.dark.unwrap_or(self.system_dark)
     }
 }

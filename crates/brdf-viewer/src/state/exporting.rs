@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use brdf_fit::output::resolved;
+use brdf_fit::plot::{Ground, Layout, View};
 
 use super::interface::Dialog;
 use super::sample::Sample;
@@ -165,10 +166,24 @@ impl State {
         Ok(layers)
     }
 
+    /// The view with what of it is shown, on the ground of the window.
+    fn view_of_figure(&self) -> View {
+        View {
+            // Panels show all, because each may show another part.
+            zoom: self.zoom.filter(|_| self.view.layout == Layout::Together),
+            ground: if self.is_dark() {
+                Ground::Dark
+            } else {
+                Ground::Light
+            },
+            ..self.view
+        }
+    }
+
     /// Copies the figure to the clipboard.
     pub(super) fn copy_figure(&mut self) {
         match self.layers() {
-            Ok(layers) => self.start(Job::File(FileJob::Draw(layers, self.view))),
+            Ok(layers) => self.start(Job::File(FileJob::Draw(layers, self.view_of_figure()))),
             Err(error) => self.report_error(error.to_string()),
         }
     }
@@ -176,7 +191,9 @@ impl State {
     fn output(&self, kind: OutputKind, path: &Path) -> Result<Output, ExportError> {
         let sample = self.active_sample().ok_or(ExportError::NoSample)?;
         Ok(match kind {
-            OutputKind::Figure(format) => Output::Figure(format, self.layers()?, self.view),
+            OutputKind::Figure(format) => {
+                Output::Figure(format, self.layers()?, self.view_of_figure())
+            }
             OutputKind::Curves => {
                 let scan = sample.scan();
                 let psi = scan.incidences.iter().map(|incidence| incidence.psi);

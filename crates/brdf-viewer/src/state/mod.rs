@@ -28,7 +28,7 @@ pub mod saved;
 use std::path::PathBuf;
 
 use brdf_fit::Convention;
-use brdf_fit::plot::View;
+use brdf_fit::plot::{View, Zoom};
 
 use egui::ColorImage;
 
@@ -110,6 +110,8 @@ pub struct State {
     pub dialog: Option<Dialog>,
     /// The paths of recently opened files, the latest first.
     pub recent: Vec<PathBuf>,
+    /// The part of the plot that is shown; `None` is all of it.
+    pub zoom: Option<Zoom>,
     /// The number of zoom resets. A plot resets its zoom when this number changes.
     pub zoom_resets: u64,
     /// Whether the theme of the system is dark.

@@ -186,6 +186,10 @@ fn a_plot_is_zoomed_panned_and_reset() {
     settle(&mut window);
     let panned = *plot(&window, "theory").bounds();
     assert!((panned.width() - zoomed.width()).abs() < 1e-9 && panned.min()[0] < zoomed.min()[0]);
+    // A figure that is exported shows this part.
+    settle(&mut window);
+    let shown = window.state().state.zoom.unwrap();
+    assert_eq!(shown.theta_deg, [panned.min()[0], panned.max()[0]]);
     click(&mut window, "Reset zoom");
     assert_eq!(plot(&window, "theory").bounds(), &whole);
     zoom_at(&mut window, "BRDF plot");

@@ -57,8 +57,15 @@ pub struct Layer<'a> {
 /// polar form, with or without the residuals below.
 pub fn figure_of(layers: &[Layer], view: &View) -> Figure {
     let curves = curves(layers, view);
-    let title = title(layers);
+    let title = Title {
+        ground: view.ground,
+        ..title(layers)
+    };
     let axis = theory::axis(&curves, view.scale);
+    let axis = match view.zoom.filter(|_| view.layout != Layout::Polar) {
+        Some(zoom) => axis.within(zoom.value),
+        None => axis,
+    };
     let note = match (view.layout, view.scale) {
         (Layout::Polar, _) => polar::note_on_missing(&curves),
         (_, Scale::Linear) => None,
@@ -121,7 +128,7 @@ fn title(layers: &[Layer]) -> Title {
             sample: shortened(&name, LONGEST_TITLE),
             details: theory.clone(),
             theory,
-            samples: Vec::new(),
+            ..Title::default()
         };
     }
     let names = join(&|layer: &Layer| layer.title());
@@ -130,6 +137,7 @@ fn title(layers: &[Layer]) -> Title {
         details: String::new(),
         theory,
         samples: layers.iter().map(Layer::line).collect(),
+        ..Title::default()
     }
 }
 
@@ -236,7 +244,7 @@ impl Panel<'_> {
         let view = &curves.view;
         let below = view.residuals.then(|| self.residuals_area());
         let frame = Frame {
-            x: self.theta_axis(),
+            x: self.theta_axis(view),
             y: y.clone(),
             area: Area {
                 bottom: below.map_or(self.area.bottom, |below| below.top - 28.0),
@@ -253,7 +261,7 @@ impl Panel<'_> {
         }
         if let Some(area) = below {
             let frame = Frame {
-                x: self.theta_axis(),
+                x: self.theta_axis(view),
                 y: residuals::axis(curves),
                 area,
             };
@@ -271,8 +279,10 @@ impl Panel<'_> {
         }
     }
 
-    fn theta_axis(&self) -> Axis {
-        Axis::fixed(-90, 90, if self.small { 45 } else { 15 })
+    fn theta_axis(&self, view: &View) -> Axis {
+        let all = Axis::fixed(-90, 90, if self.small { 45 } else { 15 });
+        view.zoom
+            .map_or(all.clone(), |zoom| all.within(zoom.theta_deg))
     }
 
     fn residuals_area(&self) -> Area {
@@ -289,6 +299,8 @@ mod tests {
     use brdf_core::{Family, ModelParameters, Parameters};
 
     use super::*;
+    use crate::plot::palette::Ground;
+    use crate::plot::view::Zoom;
 
     #[test]
     fn a_figure_of_several_samples_names_every_curve_and_all_parameters() {
@@ -315,6 +327,53 @@ mod tests {
             for i in 0..4 {
                 assert!(svg.contains(&format!("piece {i}: three: k2")), "{layout:?}");
                 assert!(svg.contains(&format!("k1 = 0.200{i}, n = 1.5000")));
+            }
+        }
+    }
+
+    #[test]
+    fn a_figure_shows_the_zoom_of_its_view_on_its_ground() {
+        let truth = Parameters::new(0.3, 0.1, 0.2).unwrap();
+        let scan = crate::scan::synthetic::scan(truth, 1.5);
+        let at = ModelParameters::three(truth, 1.5);
+        let layer = Layer {
+            name: "sample".to_owned(),
+            measurements: &scan,
+            brdf: AnyBrdf::new(Family::Paper, &at).unwrap(),
+            theory: String::new(),
+            sigma: None,
+            incidences: None,
+            family: None,
+        };
+        let figure = |view: View| figure_of(std::slice::from_ref(&layer), &view).svg;
+        let all = figure(View::default());
+        assert!(all.contains("fill=\"#FFFFFF\"") && all.contains("\n-90\n"));
+        for scale in [Scale::Linear, Scale::Logarithmic] {
+            let zoom = Zoom {
+                theta_deg: [-32.0, 12.0],
+                value: [0.05, 0.2],
+            };
+            let svg = figure(View {
+                zoom: Some(zoom),
+                ground: Ground::Dark,
+                scale,
+                ..View::default()
+            });
+            assert!(svg.contains("fill=\"#1B1B1B\"") && !svg.contains("#FFFFFF"));
+            assert!(svg.contains("\n-30\n") && !svg.contains("\n-90\n"));
+            // Nothing is drawn beyond the axes: the area, in twentieths of a unit.
+            let points = svg.split("points=\"").skip(1);
+            let points = points.flat_map(|rest| rest.split('"').next().unwrap().split_whitespace());
+            for point in points {
+                let (x, y) = point.split_once(',').unwrap();
+                let inside = |value: &str, low: f64, high: f64| {
+                    let value = value.parse::<f64>().unwrap() / 20.0;
+                    low - 4.0 <= value && value <= high + 4.0
+                };
+                // The keys of the legend are to the right of the area.
+                let in_legend = inside(x, WHOLE.right + 5.0, 960.0);
+                assert!(in_legend || inside(x, WHOLE.left, WHOLE.right), "{point}");
+                assert!(inside(y, WHOLE.top, WHOLE.bottom), "{point}");
             }
         }
     }

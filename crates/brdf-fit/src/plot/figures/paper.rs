@@ -121,7 +121,7 @@ impl PaperFigure {
                 row.wavelength_um, parameters.k2, parameters.kd, parameters.k1, row.n
             ),
             theory: "the paper's model".to_owned(),
-            samples: Vec::new(),
+            ..Title::default()
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::plot::canvas::{Canvas, Point, render};
 use crate::plot::figure::Figure;
 use crate::plot::frame::{Area, Frame, WHOLE};
 use crate::plot::legend::{Key, Legend};
+use crate::plot::palette::Ground;
 use crate::plot::palette::{MarkShape, Rgb};
 use crate::plot::style::{EMPHASIS, INK, MAIN, SIZE, TEXT, WHITE};
 use crate::plot::svg::{Anchor, Paint};
@@ -175,7 +176,7 @@ impl<'a> TradeOff<'a> {
 
     fn svg(&self) -> String {
         let key = NameKey::of(&self.shown);
-        render(key.height(), |canvas| {
+        render(key.height(), Ground::Light, |canvas| {
             self.title.draw(canvas);
             self.draw(canvas);
             self.legend().draw(canvas);

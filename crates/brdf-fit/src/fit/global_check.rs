@@ -16,6 +16,10 @@ use crate::solver::descent::{Descent, Rows};
 /// of summing the same minimum differ.
 const LOWER: f64 = 1e-9;
 
+/// A descent from the result of the last stage that gains no more than this fraction of E ends in the
+/// same minimum.
+const LITTLE: f64 = 1e-5;
+
 /// The outcome of the check; the parameters are those of the last stage where the check is left out
 /// or finds nothing lower.
 pub(super) struct Checked {
@@ -51,14 +55,16 @@ pub(super) fn check_globally(
     let lowest_from = |start| descent.from(start, Rows { y, factors: None }).0;
     let is_lower =
         |at: &ModelParameters, here| objective.error(at) < here * (1.0 - LOWER) - ROUNDING;
-    // In a flat valley, a minimiser of E ends where a step gains less than rounding. What a descent gains
-    // there is no other minimum.
+    // In a flat valley, a minimiser of E ends where a step gains less than rounding. The little that a
+    // descent gains there is no other minimum.
     let mut parameters = last.parameters;
     let deepest = lowest_from(parameters);
-    if is_lower(&deepest, objective.error(&parameters)) {
+    let here = objective.error(&parameters);
+    if is_lower(&deepest, here) {
         parameters = deepest;
     }
-    let own_valley = parameters;
+    let is_same = objective.error(&deepest) >= here * (1.0 - LITTLE);
+    let own_valley = if is_same { parameters } else { last.parameters };
     let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
     let minima = profile.minima();
     for minimum in minima.iter().chain(&profile.ends_of_plains(&minima)) {

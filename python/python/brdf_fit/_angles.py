@@ -1,0 +1,71 @@
+"""Angles in radians or degrees, and the shapes of arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Floats = NDArray[np.float64]
+
+
+def radians(
+    psi: ArrayLike | None,
+    theta: ArrayLike | None,
+    phi: ArrayLike | None,
+    psi_deg: ArrayLike | None,
+    theta_deg: ArrayLike | None,
+    phi_deg: ArrayLike | None,
+) -> tuple[Floats, Floats, Floats]:
+    """The three angles in radians, each given in radians or in degrees; phi is 0 where neither is given.
+
+    Raises TypeError where an angle is given in both units, or psi or theta in none.
+    """
+    return (
+        _one("psi", psi, psi_deg),
+        _one("theta", theta, theta_deg),
+        _one("phi", phi, phi_deg, default=0.0),
+    )
+
+
+def radians_of(name: str, value: ArrayLike | None, value_deg: ArrayLike | None) -> Floats:
+    """One angle in radians, given in radians or in degrees."""
+    return _one(name, value, value_deg)
+
+
+def _one(
+    name: str, value: ArrayLike | None, value_deg: ArrayLike | None, default: float | None = None
+) -> Floats:
+    if value is not None and value_deg is not None:
+        raise TypeError(f"{name} and {name}_deg are both given: expected one of them")
+    if value is not None:
+        return floats(name, value)
+    if value_deg is not None:
+        return np.deg2rad(floats(f"{name}_deg", value_deg))
+    if default is None:
+        raise TypeError(f"neither {name} (radians) nor {name}_deg (degrees) is given")
+    return np.asarray(default)
+
+
+def floats(name: str, value: ArrayLike) -> Floats:
+    """An array of float64.
+
+    Raises TypeError for what is not a real number: complex numbers, texts, objects.
+    """
+    array = np.asarray(value)
+    if array.dtype.kind not in "fiu":
+        raise TypeError(f"{name} has the type {array.dtype}: expected real numbers")
+    return array.astype(np.float64, copy=False)
+
+
+def broadcast(names: tuple[str, ...], *arrays: Floats) -> tuple[tuple[int, ...], list[Floats]]:
+    """The common shape of arrays, and the arrays in this shape with one axis, contiguous.
+
+    Raises ValueError where the shapes do not broadcast.
+    """
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays))
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(names, arrays))
+        raise ValueError(f"the shapes do not broadcast: {shapes}") from None
+    flat = [np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1) for array in arrays]
+    return shape, flat

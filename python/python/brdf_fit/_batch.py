@@ -206,6 +206,9 @@ class Geometry:
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, self._key
 
+    def __dask_tokenize__(self) -> tuple[Any, ...]:
+        return self._key
+
     def fit_many(
         self,
         scans: ArrayLike,

@@ -139,16 +139,13 @@ impl<T: Copy + Into<f64> + Sync> Work<'_, T> {
     fn fit_on_this_thread(&self, py: Python<'_>) -> PyResult<Result<BatchFit, BatchError>> {
         let mut exception = None;
         let fit = py.detach(|| {
-            self.fit(
-                true,
-                &mut |_, _| match Python::attach(|py| py.check_signals()) {
-                    Ok(()) => ControlFlow::Continue(()),
-                    Err(error) => {
-                        exception = Some(error);
-                        ControlFlow::Break(())
-                    }
-                },
-            )
+            self.fit(true, &mut |_, _| match pool::check_signals() {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    exception = Some(error);
+                    ControlFlow::Break(())
+                }
+            })
         });
         exception.map_or(Ok(fit), Err)
     }

@@ -22,15 +22,12 @@ pub(crate) fn brdf(model: &str, at: &ModelParameters) -> PyResult<AnyBrdf> {
 #[pyfunction]
 pub(crate) fn evaluate<'py>(
     py: Python<'py>,
-    psi: PyReadonlyArray1<'py, f64>,
-    theta: PyReadonlyArray1<'py, f64>,
-    phi: PyReadonlyArray1<'py, f64>,
+    angles: [PyReadonlyArray1<'py, f64>; 3],
     parameters: [f64; 5],
     model: &str,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let brdf = brdf(model, &of_array(parameters))?;
-    let angles = [values(&psi)?, values(&theta)?, values(&phi)?];
-    let count = check(&angles)?;
+    let (angles, count) = checked(&angles)?;
     let values = in_pieces(py, count, |i| value(&brdf, &angles, i))?;
     Ok(values.into_pyarray(py))
 }
@@ -39,15 +36,12 @@ pub(crate) fn evaluate<'py>(
 #[pyfunction]
 pub(crate) fn evaluate_each<'py>(
     py: Python<'py>,
-    psi: PyReadonlyArray1<'py, f64>,
-    theta: PyReadonlyArray1<'py, f64>,
-    phi: PyReadonlyArray1<'py, f64>,
+    angles: [PyReadonlyArray1<'py, f64>; 3],
     parameters: [PyReadonlyArray1<'py, f64>; 5],
     model: &str,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let family = model.parse::<Model>().map_err(value_error)?.family();
-    let angles = [values(&psi)?, values(&theta)?, values(&phi)?];
-    let count = check(&angles)?;
+    let (angles, count) = checked(&angles)?;
     let columns = parameters
         .iter()
         .map(values)
@@ -106,12 +100,17 @@ pub(crate) fn of_array([k2, kd, k1, n, p]: [f64; 5]) -> ModelParameters {
     ModelParameters { k2, kd, k1, n, p }
 }
 
-fn check(angles: &[&[f64]; 3]) -> PyResult<usize> {
-    same_length(&[
+/// The values of psi, theta and phi, and their number.
+fn checked<'a>(
+    [psi, theta, phi]: &'a [PyReadonlyArray1<'_, f64>; 3],
+) -> PyResult<([&'a [f64]; 3], usize)> {
+    let angles = [values(psi)?, values(theta)?, values(phi)?];
+    let count = same_length(&[
         ("psi", angles[0].len()),
         ("theta", angles[1].len()),
         ("phi", angles[2].len()),
-    ])
+    ])?;
+    Ok((angles, count))
 }
 
 fn value(brdf: &AnyBrdf, [psi, theta, phi]: &[&[f64]; 3], i: usize) -> Result<f64, String> {

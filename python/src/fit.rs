@@ -3,7 +3,7 @@
 use brdf_fit::report::html;
 use brdf_fit::{
     AssumedErrors, Depth, Document, FitOptions, FixedParameters, Loss, ModelChoice, Parameter,
-    Warning, Weights, report,
+    RefractiveIndex, Warning, Weights, report,
 };
 use pyo3::prelude::*;
 
@@ -52,7 +52,7 @@ pub(crate) fn fit(
             )));
         }
     };
-    let options = options.checked(scan)?;
+    let options = options.checked()?;
     let (report, error) = pool::run(py, threads, |interrupt| {
         report::Report::observed(&scan.0, &options, choice, depth, interrupt)
     })?;
@@ -63,7 +63,7 @@ pub(crate) fn fit(
 }
 
 impl Options {
-    fn checked(&self, scan: &Scan) -> PyResult<FitOptions> {
+    fn checked(&self) -> PyResult<FitOptions> {
         let mut fixed = FixedParameters::none();
         for (name, value) in &self.fixed {
             let parameter: Parameter = name.parse().map_err(value_error)?;
@@ -86,7 +86,7 @@ impl Options {
         let robust = self.robust.as_deref().map(str::parse::<Loss>);
         Ok(FitOptions {
             model: model.map_err(value_error)?,
-            refractive_index: scan.index(self.n)?,
+            refractive_index: self.n.map(RefractiveIndex::Same),
             weights: Weights {
                 errors,
                 ..Weights::default()
@@ -157,9 +157,9 @@ impl Report {
 
     /// k2, kD, k1, n and p.
     #[getter]
-    fn parameters(&self) -> PyResult<[f64; 5]> {
+    fn parameters(&self) -> PyResult<(f64, f64, f64, f64, f64)> {
         let at = self.fit()?.at();
-        Ok([at.k2, at.kd, at.k1, at.n, at.p])
+        Ok((at.k2, at.kd, at.k1, at.n, at.p))
     }
 
     #[getter]

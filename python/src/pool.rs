@@ -75,6 +75,15 @@ impl Observer for Interrupt {
     }
 }
 
+/// Takes the GIL and looks for Ctrl+C.
+#[expect(
+    clippy::redundant_closure_for_method_calls,
+    reason = "the method is not general enough in its lifetime"
+)]
+pub(crate) fn check_signals() -> PyResult<()> {
+    Python::attach(|py| py.check_signals())
+}
+
 /// Does work on a pool without the GIL. Meanwhile this thread looks for Ctrl+C, which only the main
 /// thread of Python can see: it sets the interrupt, and its exception is returned when the work ends.
 pub(crate) fn run<T: Send>(
@@ -101,7 +110,7 @@ pub(crate) fn run<T: Send>(
                         return Err(PyRuntimeError::new_err("internal error"));
                     }
                     Err(RecvTimeoutError::Timeout) => {
-                        if let Err(error) = Python::attach(|py| py.check_signals()) {
+                        if let Err(error) = check_signals() {
                             interrupt.0.store(true, Ordering::Relaxed);
                             exception = Some(error);
                         }

@@ -1,11 +1,11 @@
 //! Scans: readings with their angles.
 
-use brdf_fit::{Measurement, Measurements, RefractiveIndex};
+use brdf_fit::{Measurement, Measurements};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::arrays::{same_length, values};
-use crate::error::{FitError, value_error};
+use crate::error::value_error;
 
 /// The readings of one wavelength.
 #[pyclass(frozen, module = "brdf_fit._native")]
@@ -13,23 +13,15 @@ pub(crate) struct Scan(pub(crate) Measurements);
 
 #[pymethods]
 impl Scan {
-    /// A scan of arrays, in radians and 1/sr.
+    /// A scan of psi, theta and phi in radians, and f_r in 1/sr.
     #[new]
     fn new(
-        psi: PyReadonlyArray1<'_, f64>,
-        theta: PyReadonlyArray1<'_, f64>,
-        phi: PyReadonlyArray1<'_, f64>,
-        brdf: PyReadonlyArray1<'_, f64>,
+        columns: [PyReadonlyArray1<'_, f64>; 4],
         sigma: Option<PyReadonlyArray1<'_, f64>>,
         wavelength_um: Option<f64>,
         source: String,
     ) -> PyResult<Self> {
-        let columns = [
-            values(&psi)?,
-            values(&theta)?,
-            values(&phi)?,
-            values(&brdf)?,
-        ];
+        let columns = columns.iter().map(values).collect::<PyResult<Vec<_>>>()?;
         let sigma = sigma.as_ref().map(values).transpose()?;
         let mut lengths = vec![
             ("brdf", columns[3].len()),
@@ -120,17 +112,5 @@ impl Scan {
             column(|reading| reading.brdf),
             column(|reading| reading.sigma.unwrap_or(f64::NAN)),
         ]
-    }
-}
-
-impl Scan {
-    /// The refractive index of a fit: that which is given, or that which the scan states.
-    pub(crate) fn index(&self, n: Option<f64>) -> PyResult<Option<RefractiveIndex>> {
-        match n {
-            Some(n) if !n.is_finite() => Err(FitError::new_err(format!(
-                "n = {n}: expected a number from 1 to 1e5"
-            ))),
-            _ => Ok(n.map(RefractiveIndex::Same)),
-        }
     }
 }

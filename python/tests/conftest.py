@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import brdf_fit as bf
 
@@ -25,7 +26,7 @@ def geometry(scan: bf.Scan) -> bf.Geometry:
     return bf.Geometry(scan.psi, scan.theta, scan.phi, n=1.5)
 
 
-def simulated(geometry: bf.Geometry, count: int, seed: int = 1) -> np.ndarray:
+def simulated(geometry: bf.Geometry, count: int, seed: int = 1) -> NDArray[np.float64]:
     """Scans of known surfaces with noise of 1 % of each reading, shape (count, readings)."""
     random = np.random.default_rng(seed)
     k2, kd, k1 = np.exp(random.uniform(np.log(0.05), np.log(0.5), (3, count, 1)))

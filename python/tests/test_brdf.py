@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 import brdf_fit as bf
 
 EXPECTED = 0.490114021822736
-AT = {"k2": 1.211, "kd": 0.521, "k1": 0.071, "n": 1.60}
+AT: dict[str, Any] = {"k2": 1.211, "kd": 0.521, "k1": 0.071, "n": 1.60}
 
 
 def test_a_value_has_the_digits_of_the_library() -> None:

@@ -9,6 +9,7 @@ import pickle
 import shutil
 import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -69,7 +70,7 @@ def test_arrays_and_degrees_give_the_fit_of_the_scan(fit: bf.Fit) -> None:
     by_radians = bf.fit(scan.psi, scan.theta, scan.phi, scan.brdf, n=1.5)
     assert by_radians.parameters == fit.parameters and by_radians.intervals == fit.intervals
     frame = scan.to_frame()
-    columns = {name: frame[name] for name in ("psi_deg", "theta_deg", "phi_deg", "brdf")}
+    columns: dict[str, Any] = {name: frame[name] for name in ("psi_deg", "theta_deg", "phi_deg", "brdf")}
     by_degrees = bf.fit(**columns, n=1.5)
     assert by_degrees.e_percent == pytest.approx(fit.e_percent, rel=1e-12)
     gap = np.append(scan.brdf, np.nan)
@@ -132,7 +133,7 @@ def test_results_can_be_pickled(fit: bf.Fit) -> None:
 
 def test_a_file_has_a_scan_for_each_wavelength() -> None:
     scans = bf.read(MEASURED)
-    wavelengths = [scan.wavelength_um for scan in scans]
+    wavelengths = [scan.wavelength_um or 0.0 for scan in scans]
     assert wavelengths == sorted(wavelengths) and len(scans) > 1
     scan = scans[0]
     assert len(scan) == 112 and scan.format == "csv" and scan.source == str(MEASURED)
@@ -168,7 +169,7 @@ def test_errors_of_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["json", "c", "glsl", "wgsl", "osl", "python", "astm", "zemax", "csv"])
 def test_a_fit_is_written_in_each_format(fit: bf.Fit, tmp_path: Path, name: str) -> None:
-    tolerance = {"tolerance": 0.2} if name in ("astm", "zemax") else {}
+    tolerance: dict[str, Any] = {"tolerance": 0.2} if name in ("astm", "zemax") else {}
     (path,) = bf.export(fit, tmp_path / "fit.txt", name, **tolerance)
     assert path.stat().st_size > 100
 

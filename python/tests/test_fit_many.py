@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ def test_each_scan_has_the_optimum_of_the_single_fit(geometry: bf.Geometry) -> N
 
 
 def test_known_parameters_are_found(geometry: bf.Geometry) -> None:
-    truth = {"k2": 0.3, "kd": 0.1, "k1": 0.2}
+    truth: dict[str, Any] = {"k2": 0.3, "kd": 0.1, "k1": 0.2}
     scan = bf.evaluate(geometry.psi, geometry.theta, geometry.phi, **truth, n=1.5)
     many = geometry.fit_many(scan)
     assert many.shape == () and many.status == 0
@@ -128,7 +129,7 @@ def test_weights_of_zero_are_gaps(geometry: bf.Geometry) -> None:
 
 
 def test_standard_errors_scatter_as_the_fits(geometry: bf.Geometry) -> None:
-    truth = {"k2": 0.3, "kd": 0.1, "k1": 0.2}
+    truth: dict[str, Any] = {"k2": 0.3, "kd": 0.1, "k1": 0.2}
     f_r = bf.evaluate(geometry.psi, geometry.theta, geometry.phi, **truth, n=1.5)
     noise = np.random.default_rng(2).standard_normal((2000, len(geometry)))
     many = geometry.fit_many(f_r + 0.002 * noise / np.cos(geometry.theta), errors=True)
@@ -159,7 +160,7 @@ def test_n_and_other_models(geometry: bf.Geometry) -> None:
 
 
 def test_degrees_and_radians_and_frames_are_one_geometry(geometry: bf.Geometry) -> None:
-    columns = {
+    columns: dict[str, Any] = {
         "psi_deg": np.rad2deg(geometry.psi),
         "theta_deg": np.rad2deg(geometry.theta),
         "phi_deg": np.rad2deg(geometry.phi),

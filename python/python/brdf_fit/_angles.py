@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -57,15 +59,23 @@ def floats(name: str, value: ArrayLike) -> Floats:
     return array.astype(np.float64, copy=False)
 
 
-def broadcast(names: tuple[str, ...], *arrays: Floats) -> tuple[tuple[int, ...], list[Floats]]:
+def broadcast(
+    names: tuple[str, ...], *arrays: NDArray[Any]
+) -> tuple[tuple[int, ...], list[NDArray[Any]]]:
     """The common shape of arrays, and the arrays in this shape with one axis, contiguous.
 
     Raises ValueError where the shapes do not broadcast.
     """
     try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays))
+        shape = np.broadcast(*arrays).shape
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(names, arrays))
         raise ValueError(f"the shapes do not broadcast: {shapes}") from None
-    flat = [np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1) for array in arrays]
-    return shape, flat
+    return shape, [_flat(array, shape) for array in arrays]
+
+
+def _flat(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """The array in this shape as one axis, copied only where it is broadcast or strided."""
+    if array.shape != shape:
+        array = np.broadcast_to(array, shape)
+    return np.require(array, requirements=["C", "ALIGNED"]).reshape(-1)

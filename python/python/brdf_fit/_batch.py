@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -125,6 +126,9 @@ class Geometry:
 
     __slots__ = ("_key", "_plan")
 
+    _key: tuple[bytes, bytes, bytes, float, str]
+    _plan: _native.BatchPlan
+
     def __init__(
         self,
         psi: ArrayLike | None = None,
@@ -139,7 +143,8 @@ class Geometry:
     ) -> None:
         angles = radians(psi, theta, phi, psi_deg, theta_deg, phi_deg)
         _, flat = broadcast(("psi", "theta", "phi"), *angles)
-        self._key = (*(angle.tobytes() for angle in flat), float(n), model)
+        of_psi, of_theta, of_phi = (angle.tobytes() for angle in flat)
+        self._key = (of_psi, of_theta, of_phi, float(n), model)
         self._plan = _plan(*self._key)
 
     @classmethod
@@ -319,7 +324,7 @@ def _as_scans(weights: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
 
 def _rows(array: NDArray[Any]) -> NDArray[Any]:
     """The array as (scans, readings), in C or Fortran order; copied only where it has neither."""
-    count = int(np.prod(array.shape[:-1]))
+    count = math.prod(array.shape[:-1])
     rows = array.reshape(count, array.shape[-1])
     if rows.flags.f_contiguous and rows.flags.aligned:
         return rows

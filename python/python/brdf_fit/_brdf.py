@@ -51,10 +51,10 @@ def evaluate(
     values = [floats(name, value) for name, value in zip(names, (k2, kd, k1, n, p))]
     if all(value.ndim == 0 for value in values) and not any(np.isnan(value) for value in values):
         shape, flat = broadcast(("psi", "theta", "phi"), *angles)
-        found = _native.evaluate(*flat, [float(value) for value in values], model)
+        found = _native.evaluate(flat, [float(value) for value in values], model)
     else:
         shape, flat = broadcast(("psi", "theta", "phi", *names), *angles, *values)
-        found = _native.evaluate_each(*flat[:3], flat[3:], model)
+        found = _native.evaluate_each(flat[:3], flat[3:], model)
     return found.reshape(shape)
 
 
@@ -181,9 +181,11 @@ class Plan:
         evaluations: float = 1e8,
         cosines: bool = False,
     ) -> None:
-        limits = np.deg2rad([psi_max_deg, theta_max_deg]).tolist()
+        psi_max, theta_max = np.deg2rad([psi_max_deg, theta_max_deg]).tolist()
         parameters = _scalars(k2, kd, k1, n, p)
-        self._plan = _native.Plan(parameters, model, tolerance, *limits, evaluations, cosines)
+        self._plan = _native.Plan(
+            parameters, model, tolerance, psi_max, theta_max, evaluations, cosines
+        )
 
     @property
     def name(self) -> str:

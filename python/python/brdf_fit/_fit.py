@@ -81,7 +81,6 @@ class Fit:
         phi_deg: ArrayLike | None = None,
     ) -> Floats:
         """f_r of the fit in 1/sr; see :func:`brdf_fit.evaluate`."""
-        at = self.parameters
         return evaluate(
             psi,
             theta,
@@ -89,12 +88,7 @@ class Fit:
             psi_deg=psi_deg,
             theta_deg=theta_deg,
             phi_deg=phi_deg,
-            k2=at.k2,
-            kd=at.kd,
-            k1=at.k1,
-            n=at.n,
-            p=at.p,
-            model=at.model,
+            **self.parameters.to_dict(),
         )
 
     def residuals(self) -> Floats:
@@ -200,13 +194,13 @@ def fit(
         "energy_limit": None if energy_limit_deg is None else float(np.deg2rad(energy_limit_deg)),
         "global_check": global_check,
     }
-    return _of_report(_native.fit(scan._native, options, depth, threads), scan)
+    return _of_report(_native.fit(scan._handle, options, depth, threads), scan)
 
 
 def _of_report(report: _native.Report, scan: Scan) -> Fit:
     estimates = report.estimates
     return Fit(
-        parameters=Parameters(*report.parameters, model=report.model),
+        parameters=Parameters(*report.parameters, report.model),
         intervals={name: Interval(low, high) for name, _, low, high in estimates},
         stderr={name: stderr for name, stderr, _, _ in estimates},
         e_percent=report.e_percent,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 def fit(result: Fit) -> str:
     """The parameters with their intervals, the rms error, and the warnings."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name in ("k2", "kd", "k1", "n", "p"):
         value = getattr(result.parameters, name)
         if name in result.intervals:
@@ -32,7 +32,7 @@ def batch(result: BatchFit) -> str:
     """The median and the range of each column, and the number of scans of each status."""
     from ._batch import STATUS
 
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name in ("k2", "kd", "k1", "n", "e_percent"):
         column = getattr(result, name)
         known = column[np.isfinite(column)]

@@ -6,6 +6,23 @@ from typing import Any, final
 from numpy import float64
 from numpy.typing import NDArray
 
+__all__ = [
+    "BatchPlan",
+    "ExportError",
+    "FitError",
+    "Plan",
+    "ReadError",
+    "Report",
+    "Sampler",
+    "Scan",
+    "evaluate",
+    "evaluate_each",
+    "export",
+    "fit",
+    "hemispherical_reflectance",
+    "read",
+]
+
 class FitError(ValueError): ...
 class ReadError(ValueError): ...
 class ExportError(ValueError): ...
@@ -32,10 +49,7 @@ class BatchPlan:
 class Scan:
     def __new__(
         cls,
-        psi: NDArray[float64],
-        theta: NDArray[float64],
-        phi: NDArray[float64],
-        brdf: NDArray[float64],
+        columns: Sequence[NDArray[float64]],
         sigma: NDArray[float64] | None,
         wavelength_um: float | None,
         source: str,
@@ -77,7 +91,7 @@ class Report:
     @property
     def wavelength_um(self) -> float | None: ...
     @property
-    def parameters(self) -> list[float]: ...
+    def parameters(self) -> tuple[float, float, float, float, float]: ...
     @property
     def e_percent(self) -> float: ...
     @property
@@ -113,16 +127,12 @@ class Plan:
     def evaluate(self, points: Sequence[NDArray[Any]], threads: int | None) -> NDArray[Any]: ...
 
 def evaluate(
-    psi: NDArray[float64],
-    theta: NDArray[float64],
-    phi: NDArray[float64],
+    angles: Sequence[NDArray[float64]],
     parameters: Sequence[float],
     model: str,
 ) -> NDArray[float64]: ...
 def evaluate_each(
-    psi: NDArray[float64],
-    theta: NDArray[float64],
-    phi: NDArray[float64],
+    angles: Sequence[NDArray[float64]],
     parameters: Sequence[NDArray[float64]],
     model: str,
 ) -> NDArray[float64]: ...

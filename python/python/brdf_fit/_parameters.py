@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from typing import TypedDict
+
+
+class ParameterDict(TypedDict):
+    """The keyword arguments of a BRDF."""
+
+    k2: float
+    kd: float
+    k1: float
+    n: float
+    p: float
+    model: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +34,13 @@ class Parameters:
     model: str = "three"
     """The model."""
 
-    def to_dict(self) -> dict[str, float | str]:
+    def to_dict(self) -> ParameterDict:
         """The keyword arguments of the functions of the package."""
-        return asdict(self)
+        return {
+            "k2": self.k2,
+            "kd": self.kd,
+            "k1": self.k1,
+            "n": self.n,
+            "p": self.p,
+            "model": self.model,
+        }

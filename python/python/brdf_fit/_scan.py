@@ -33,9 +33,9 @@ class Scan:
             broadcast.
     """
 
-    __slots__ = ("_native",)
+    __slots__ = ("_handle",)
 
-    _native: _native.Scan
+    _handle: _native.Scan
 
     def __init__(
         self,
@@ -63,93 +63,93 @@ class Scan:
             taken = ~np.isnan(flat[3])
             flat = [column[taken] for column in flat]
         errors = flat[4] if sigma is not None else None
-        self._native = _native.Scan(*flat[:4], errors, wavelength_um, source)
+        self._handle = _native.Scan(flat[:4], errors, wavelength_um, source)
 
     @classmethod
-    def _of(cls, native: _native.Scan) -> Scan:
+    def _of(cls, handle: _native.Scan) -> Scan:
         scan = cls.__new__(cls)
-        scan._native = native
+        scan._handle = handle
         return scan
 
     @property
     def psi(self) -> Floats:
         """Incidence angles in radians."""
-        return self._native.columns()[0]
+        return self._handle.columns()[0]
 
     @property
     def theta(self) -> Floats:
         """Signed view angles in radians."""
-        return self._native.columns()[1]
+        return self._handle.columns()[1]
 
     @property
     def phi(self) -> Floats:
         """View azimuths in radians."""
-        return self._native.columns()[2]
+        return self._handle.columns()[2]
 
     @property
     def brdf(self) -> Floats:
         """f_r in 1/sr."""
-        return self._native.columns()[3]
+        return self._handle.columns()[3]
 
     @property
     def sigma(self) -> Floats | None:
         """Standard deviations in 1/sr; None where the scan states none."""
-        sigma = self._native.columns()[4]
+        sigma = self._handle.columns()[4]
         return None if np.isnan(sigma).all() else sigma
 
     @property
     def wavelength_um(self) -> float | None:
         """Wavelength in micrometres, where the scan states one."""
-        return self._native.wavelength_um
+        return self._handle.wavelength_um
 
     @property
     def n(self) -> float | None:
         """Refractive index, where the scan states one."""
-        return self._native.n
+        return self._handle.n
 
     @property
     def source(self) -> str:
         """The path of the file, or the name of the scan."""
-        return self._native.source
+        return self._handle.source
 
     @property
     def format(self) -> str:
         """The format of the file."""
-        return self._native.format
+        return self._handle.format
 
     @property
     def metadata(self) -> dict[str, str]:
         """The keys and values of the comments of the file; the first value of a key."""
-        return dict(reversed(self._native.metadata))
+        return dict(reversed(self._handle.metadata))
 
     @property
     def conversions(self) -> tuple[str, ...]:
         """What was converted or left out when the file was read, one sentence each."""
-        return tuple(self._native.conversions)
+        return tuple(self._handle.conversions)
 
     @property
     def ignored_columns(self) -> tuple[str, ...]:
         """The columns of the file that are not used."""
-        return tuple(self._native.ignored_columns)
+        return tuple(self._handle.ignored_columns)
 
     def to_frame(self) -> pandas.DataFrame:
         """The readings as a table of pandas: psi_deg, theta_deg, phi_deg, brdf and sigma. Needs pandas."""
         import pandas
 
-        psi, theta, phi, brdf, sigma = self._native.columns()
+        psi, theta, phi, brdf, sigma = self._handle.columns()
         angles = {"psi_deg": psi, "theta_deg": theta, "phi_deg": phi}
         columns = {name: np.rad2deg(angle) for name, angle in angles.items()} | {"brdf": brdf}
         return pandas.DataFrame(columns if np.isnan(sigma).all() else columns | {"sigma": sigma})
 
     def __len__(self) -> int:
-        return len(self._native)
+        return len(self._handle)
 
     def __repr__(self) -> str:
         wavelength = "" if self.wavelength_um is None else f" at {self.wavelength_um} um"
         return f"<Scan of {len(self)} readings{wavelength} from {self.source!r}>"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _scan_from_json, (self._native.to_json(),)
+        return _scan_from_json, (self._handle.to_json(),)
 
 
 def _scan_from_json(text: str) -> Scan:

@@ -10,7 +10,7 @@ Needs ``dask[array]``, and xarray for its arrays.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import dask.array as da
 import numpy as np
@@ -26,6 +26,24 @@ STDERR_COLUMNS = ("k2_stderr", "kd_stderr", "k1_stderr", "n_stderr", "p_stderr")
 INTEGERS = {"readings": np.uint32, "status": np.uint8}
 
 
+@overload
+def fit_many(
+    geometry: Geometry,
+    scans: xarray.DataArray,
+    *,
+    dim: str = ...,
+    weights: da.Array | xarray.DataArray | NDArray[Any] | None = ...,
+    errors: bool = ...,
+) -> xarray.Dataset: ...
+@overload
+def fit_many(
+    geometry: Geometry,
+    scans: da.Array,
+    *,
+    dim: str = ...,
+    weights: da.Array | xarray.DataArray | NDArray[Any] | None = ...,
+    errors: bool = ...,
+) -> dict[str, da.Array]: ...
 def fit_many(
     geometry: Geometry,
     scans: da.Array | xarray.DataArray,

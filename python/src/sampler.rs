@@ -33,6 +33,9 @@ impl Sampler {
         let drawn = py.detach(|| {
             let (mut views, mut pdf, mut weight) = (Vec::new(), Vec::new(), Vec::new());
             for (i, (&source, &u)) in source.iter().zip(u).enumerate() {
+                if let Some(u) = u.iter().find(|u| !(0.0..=1.0).contains(*u)) {
+                    return Err(format!("point {i}: u = {u}: expected numbers in [0, 1)"));
+                }
                 match self.0.sample(source, u) {
                     Err(error) => return Err(format!("point {i}: {error}")),
                     Ok(Some(sample)) => {

@@ -14,10 +14,10 @@ EXPECTED = 0.490114021822736
 AT: dict[str, Any] = {"k2": 1.211, "kd": 0.521, "k1": 0.071, "n": 1.60}
 
 
-def test_a_value_has_the_digits_of_the_library() -> None:
-    # Of `brdf_core::AnyBrdf::value` at these angles: the digits are the same on every machine.
-    assert bf.evaluate(0.5, -0.4, **AT) == EXPECTED
-    assert bf.evaluate(psi=0.5, theta=-0.4, phi=0.0, **AT) == EXPECTED
+def test_angles_are_in_radians_or_degrees() -> None:
+    # Sample 001 of the paper's Table 1, by `brdf_core::AnyBrdf::value`.
+    assert bf.evaluate(0.5, -0.4, **AT) == pytest.approx(EXPECTED, rel=1e-14)
+    assert bf.evaluate(psi=0.5, theta=-0.4, phi=0.0, **AT) == bf.evaluate(0.5, -0.4, **AT)
     degrees = bf.evaluate(psi_deg=math.degrees(0.5), theta_deg=math.degrees(-0.4), **AT)
     assert degrees == pytest.approx(EXPECTED, rel=1e-14)
 
@@ -89,6 +89,9 @@ def test_the_mean_weight_of_samples_is_the_reflectance() -> None:
     assert bf.sample(source, u.reshape(100, 200, 3), **AT).direction.shape == (100, 200, 3)
     with pytest.raises(ValueError, match=r"u has the shape \(2,\): expected \(\.\.\., 3\)"):
         bf.sample(source, [0.1, 0.2], **AT)
+    for wrong in (1.5, -0.1, math.nan):
+        with pytest.raises(ValueError, match="point 1: u = .*: expected numbers in"):
+            bf.sample(source, [[0.1, 0.2, 0.3], [0.1, wrong, 0.3]], **AT)
     with pytest.raises(ValueError, match="point 0"):
         bf.pdf([0.0, 0.0, 2.0], source, **AT)
 

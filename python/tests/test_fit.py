@@ -6,14 +6,13 @@ import json
 import math
 import os
 import pickle
-import shutil
 import subprocess
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import MEASURED, ROOT
+from conftest import MEASURED
 
 import brdf_fit as bf
 
@@ -23,17 +22,10 @@ def fit(scan: bf.Scan) -> bf.Fit:
     return bf.fit(scan, n=1.5)
 
 
-def program() -> str | None:
-    """The command line, where it is built."""
-    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-    built = (target / profile / "brdf" for profile in ("release", "debug"))
-    return next((str(path) for path in built if path.exists()), shutil.which("brdf"))
-
-
 def test_the_numbers_are_those_of_the_command_line_to_the_last_bit(tmp_path: Path) -> None:
-    brdf = program()
+    brdf = os.environ.get("BRDF_PROGRAM")
     if brdf is None:
-        pytest.skip("the program brdf is not built")
+        pytest.skip("BRDF_PROGRAM does not say where the program brdf of this source is")
     command = [brdf, "fit", str(MEASURED), "--n", "1.5", "--json", str(tmp_path / "fits.json")]
     subprocess.run(command, capture_output=True, check=True)
     reports = json.loads((tmp_path / "fits.json").read_text())["reports"]
@@ -172,6 +164,14 @@ def test_a_fit_is_written_in_each_format(fit: bf.Fit, tmp_path: Path, name: str)
     tolerance: dict[str, Any] = {"tolerance": 0.2} if name in ("astm", "zemax") else {}
     (path,) = bf.export(fit, tmp_path / "fit.txt", name, **tolerance)
     assert path.stat().st_size > 100
+
+
+def test_values_have_the_digits_of_the_exported_table(fit: bf.Fit, tmp_path: Path) -> None:
+    grid = "psi=0:80:10 theta=-85:85:5 phi=0,30,180"
+    bf.export(fit, tmp_path / "fit.csv", "csv", grid=grid)
+    (table,) = bf.read(tmp_path / "fit.csv")
+    assert len(table) == 9 * 35 * 3
+    assert np.array_equal(fit.evaluate(table.psi, table.theta, table.phi), table.brdf)
 
 
 def test_mitsuba_has_a_plugin_and_a_scene(tmp_path: Path) -> None:

@@ -85,6 +85,8 @@ def test_a_gap_is_a_reading_that_was_not_taken(geometry: bf.Geometry) -> None:
     gaps = scans.copy()
     gaps[3, :40:2] = np.nan
     many = geometry.fit_many(gaps)
+    masked = np.ma.masked_array(scans, mask=np.isnan(gaps))
+    assert columns_equal(geometry.fit_many(masked), many)
     assert many.readings[3] == 92 and many.readings[4] == 112
     taken = ~np.isnan(gaps[3])
     part = bf.Geometry(geometry.psi[taken], geometry.theta[taken], geometry.phi[taken], n=1.5)

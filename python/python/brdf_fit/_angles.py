@@ -49,14 +49,22 @@ def _one(
 
 
 def floats(name: str, value: ArrayLike) -> Floats:
-    """An array of float64.
+    """An array of float64; masked values are NaN.
 
     Raises TypeError for what is not a real number: complex numbers, texts, objects.
     """
+    return numbers(name, value).astype(np.float64, copy=False)
+
+
+def numbers(name: str, value: ArrayLike) -> NDArray[Any]:
+    """An array of real numbers of any type; masked values are NaN."""
     array = np.asarray(value)
     if array.dtype.kind not in "fiu":
         raise TypeError(f"{name} has the type {array.dtype}: expected real numbers")
-    return array.astype(np.float64, copy=False)
+    mask = np.ma.getmask(value)
+    if mask is np.ma.nomask:
+        return array
+    return np.where(mask, array.dtype.type(np.nan) if array.dtype.kind == "f" else np.nan, array)
 
 
 def broadcast(

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._angles import Floats, broadcast, radians
+from ._angles import Floats, broadcast, numbers, radians
 
 if TYPE_CHECKING:
     import pandas
@@ -229,7 +229,8 @@ class Geometry:
         of threads, and not on how the scans are divided among calls.
 
         Args:
-            scans: f_r in 1/sr, shape (..., readings). NaN is a reading that was not taken.
+            scans: f_r in 1/sr, shape (..., readings). NaN, or a masked value, is a
+                reading that was not taken.
             weights: Weights of the readings of at least 0: shape (readings,) or that of the scans. Scans with
                 weights or gaps take four times as long.
             errors: Whether to compute standard errors for noise of constant size.
@@ -303,13 +304,11 @@ def _restored(psi: bytes, theta: bytes, phi: bytes, n: float, model: str) -> Geo
 
 def _readings(name: str, values: ArrayLike) -> NDArray[Any]:
     """An array of float64 or float32 with at least one axis. Other real numbers become float64."""
-    array = np.asarray(values)
-    if array.dtype.kind not in "fiu":
-        raise TypeError(f"{name} have the type {array.dtype}: expected real numbers")
+    array = numbers(name, values)
     if array.dtype not in (np.float64, np.float32) or not array.dtype.isnative:
         array = array.astype(np.float64)
     if array.ndim == 0:
-        raise ValueError(f"{name} have no axis: expected the shape (..., readings)")
+        raise ValueError(f"{name} has no axis: expected the shape (..., readings)")
     return array
 
 

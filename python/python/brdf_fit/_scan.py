@@ -120,7 +120,10 @@ class Scan:
     @property
     def metadata(self) -> dict[str, str]:
         """The keys and values of the comments of the file; the first value of a key."""
-        return dict(reversed(self._handle.metadata))
+        found: dict[str, str] = {}
+        for key, value in self._handle.metadata:
+            found.setdefault(key, value)
+        return found
 
     @property
     def conversions(self) -> tuple[str, ...]:

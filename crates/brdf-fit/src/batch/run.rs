@@ -17,8 +17,11 @@ use crate::solver::descent::{Descent, Rows};
 /// The number of scans that a thread takes at a time.
 const CHUNK: usize = 512;
 
-/// The number of scans between two calls of the observer.
-const REPORTED: usize = 1 << 16;
+/// The same where n or p is free and a fit takes some ten times as long.
+const CHUNK_OF_DESCENTS: usize = 64;
+
+/// The number of chunks between two calls of the observer.
+const REPORTED: usize = 128;
 
 /// The largest weighted reading, in 1/sr, for which squares stay well within the range of `f64`.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
@@ -201,10 +204,15 @@ impl<'a, T: Copy + Into<f64> + Sync> BatchRun<'a, T> {
         self.check()?;
         let total = self.scans.len();
         let mut fit = BatchFit::with_capacity(total, self.errors);
-        for start in (0..total).step_by(REPORTED) {
-            let end = (start + REPORTED).min(total);
-            let chunks: Vec<usize> = (start..end).step_by(CHUNK).collect();
-            let one = |from: &usize| self.fit_chunk(*from, (from + CHUNK).min(end));
+        let chunk = if self.plan.fixed_index.is_some() {
+            CHUNK
+        } else {
+            CHUNK_OF_DESCENTS
+        };
+        for start in (0..total).step_by(REPORTED * chunk) {
+            let end = (start + REPORTED * chunk).min(total);
+            let chunks: Vec<usize> = (start..end).step_by(chunk).collect();
+            let one = |from: &usize| self.fit_chunk(*from, (from + chunk).min(end));
             let rows: Vec<Vec<Row>> = if self.one_thread {
                 chunks.iter().map(one).collect::<Result<_, _>>()?
             } else {

@@ -28,9 +28,11 @@ mod own;
 mod plan;
 mod result;
 mod run;
+mod scans;
 mod search;
 mod table;
 
 pub use plan::{BatchError, BatchOptions, BatchPlan};
 pub use result::{BatchFit, StandardErrors, Status};
-pub use run::{BatchObserver, Scans};
+pub use run::{BatchObserver, BatchRun};
+pub use scans::Scans;

@@ -10,6 +10,7 @@ use super::exact::{best_weights, standard_errors};
 use super::own::OwnScan;
 use super::plan::{BatchError, BatchPlan};
 use super::result::{BatchFit, Row, Status};
+use super::scans::Scans;
 use super::search::{BLOCK, Found, Search};
 use crate::model::{K1_RANGE, Parameter};
 use crate::solver::descent::{Descent, Rows};
@@ -25,95 +26,6 @@ const REPORTED: usize = 128;
 
 /// The largest weighted reading, in 1/sr, for which squares stay well within the range of `f64`.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
-
-/// Readings of many scans, `f64` or `f32`, as they lie in memory.
-#[derive(Debug, Clone, Copy)]
-pub struct Scans<'a, T> {
-    values: &'a [T],
-    count: usize,
-    readings: usize,
-    scan_stride: usize,
-    reading_stride: usize,
-}
-
-impl<'a, T> Scans<'a, T> {
-    /// Scans whose readings are adjacent, one scan after the other.
-    ///
-    /// # Errors
-    ///
-    /// The number of values is not a multiple of the number of readings.
-    pub fn new(values: &'a [T], readings: usize) -> Result<Self, BatchError> {
-        let scans = values.len().checked_div(readings).unwrap_or(0);
-        if scans * readings != values.len() {
-            return Err(BatchError::Length {
-                found: values.len(),
-                expected: (scans + 1) * readings,
-            });
-        }
-        Self::strided(values, [scans, readings], [readings, 1])
-    }
-
-    /// Reading j of scan i is at i times the first stride plus j times the second.
-    ///
-    /// # Errors
-    ///
-    /// There are fewer values than the shape needs.
-    pub fn strided(
-        values: &'a [T],
-        [scans, readings]: [usize; 2],
-        [scan_stride, reading_stride]: [usize; 2],
-    ) -> Result<Self, BatchError> {
-        let last = |count: usize, stride: usize| count.saturating_sub(1).saturating_mul(stride);
-        let expected = if scans == 0 || readings == 0 {
-            0
-        } else {
-            last(scans, scan_stride)
-                .saturating_add(last(readings, reading_stride))
-                .saturating_add(1)
-        };
-        if values.len() < expected {
-            return Err(BatchError::Length {
-                found: values.len(),
-                expected,
-            });
-        }
-        Ok(Self {
-            values,
-            count: scans,
-            readings,
-            scan_stride,
-            reading_stride,
-        })
-    }
-
-    /// The number of scans.
-    pub fn len(&self) -> usize {
-        self.count
-    }
-
-    /// Whether there are no scans.
-    pub fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-}
-
-impl<T: Copy + Into<f64>> Scans<'_, T> {
-    /// Copies the readings of a scan.
-    #[inline]
-    fn load(&self, scan: usize, to: &mut [f64]) {
-        let start = scan * self.scan_stride;
-        if self.reading_stride == 1 {
-            let values = &self.values[start..start + to.len()];
-            for (to, value) in to.iter_mut().zip(values) {
-                *to = (*value).into();
-            }
-        } else {
-            for (j, to) in to.iter_mut().enumerate() {
-                *to = self.values[start + j * self.reading_stride].into();
-            }
-        }
-    }
-}
 
 /// Receives the progress of many fits, and may cancel them.
 pub trait BatchObserver {

@@ -16,6 +16,7 @@ pub mod textbook;
 pub use python::{python, run_python};
 
 use std::ffi::OsStr;
+use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -27,6 +28,7 @@ use escargot::format::Message as CargoMessage;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
+use serde_json::Value;
 
 /// A path below the workspace's root.
 pub fn in_workspace(path: &str) -> PathBuf {
@@ -207,3 +209,20 @@ pub fn one_wavelength(path: &Path, wavelength_um: f64) -> Measurements {
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+/// The document of a run without what differs from run to run.
+pub fn without_times(json: &Path) -> Value {
+    fn strip(value: &mut Value) {
+        match value {
+            Value::Object(fields) => {
+                fields.remove("seconds");
+                fields.values_mut().for_each(strip);
+            }
+            Value::Array(values) => values.iter_mut().for_each(strip),
+            _ => {}
+        }
+    }
+    let mut document = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
+    strip(&mut document);
+    document
+}

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use brdf_tests::{fit_command, in_workspace};
+use brdf_tests::{fit_command, in_workspace, without_times};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -77,20 +77,7 @@ impl Folder {
 
 /// The reports in a document, without their times.
 fn reports(path: &Path) -> Vec<Value> {
-    let mut document: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
-    strip(&mut document);
-    document["reports"].as_array().unwrap().clone()
-}
-
-fn strip(value: &mut Value) {
-    match value {
-        Value::Object(fields) => {
-            fields.remove("seconds");
-            fields.values_mut().for_each(strip);
-        }
-        Value::Array(values) => values.iter_mut().for_each(strip),
-        _ => {}
-    }
+    without_times(path)["reports"].as_array().unwrap().clone()
 }
 
 /// A table whose columns have names that say nothing.

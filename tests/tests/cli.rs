@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use brdf_core::{Geometry, ThreeParameterBrdf};
 use brdf_fit::report::{CURVE_COLUMNS, Document, PARAMETER_COLUMNS};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex, fit};
-use brdf_tests::{brdf_command, fit_command, in_workspace, run_fit, run_with_input};
+use brdf_tests::{brdf_command, fit_command, in_workspace, run_fit, run_with_input, without_times};
 use serde_json::Value;
 
 fn measured(file: &str) -> String {
@@ -160,23 +160,6 @@ fn the_json_reads_back_and_the_curves_agree_with_the_model() {
         2,
         "nothing temporary is left"
     );
-}
-
-/// A document without what differs from run to run.
-fn without_times(json: &Path) -> Value {
-    fn strip(value: &mut Value) {
-        match value {
-            Value::Object(fields) => {
-                fields.remove("seconds");
-                fields.values_mut().for_each(strip);
-            }
-            Value::Array(values) => values.iter_mut().for_each(strip),
-            _ => {}
-        }
-    }
-    let mut document = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
-    strip(&mut document);
-    document
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use super::table::Angle;
 use nalgebra::SMatrix;
 
-/// The number of coefficients of a polynomial. On a cell of 2 * 0.25 in ln k1, the error of degree 11 is
-/// below 1e-11: the nearest singularity of the paper's model is at pi/2.
+/// The number of coefficients of a polynomial. The nearest singularity of the paper's model is at pi/2 from
+/// a cell of 2 * 0.25 in ln k1, so that degree 11 leaves rounding. Each cell measures its own error.
 const COEFFICIENTS: usize = 12;
 
 /// The columns around a point of the grid as polynomials of t = (ln k1 - ln k1 of the point) / step, over

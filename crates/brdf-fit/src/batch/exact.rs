@@ -52,7 +52,7 @@ pub(super) fn best_weights(
         aa: dot(a, a),
         ay: dot(a, rows.y),
     };
-    let fixed = [Parameter::K2, Parameter::Kd].map(|weight| model.fixed(weight));
+    let fixed = model.fixed_weights();
     let (mut k2, mut kd, _) = solve_for(fixed, &sums);
     if k2 * sums.uu.sqrt() <= NO_LOBE && model.frees(Parameter::K2) {
         (k2, kd, _) = solve_for([Some(0.0), fixed[1]], &sums);

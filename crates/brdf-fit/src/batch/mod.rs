@@ -18,8 +18,9 @@
 //! Where n or p are free, the basis is coarse and gives the starts of descents with exact columns
 //! (`solver::descent`). Scans with gaps or with weights of their own have their own scalar products (`own`).
 //!
-//! The optimum is that of [`fit`](crate::fit::fit()): E is the same to 1e-9 of its value, or to rounding
-//! where it is smaller than 1e-12.
+//! The optimum is that of [`fit`](crate::fit::fit()). With n fixed, E of the two differed by less than 1e-9
+//! of its value, or 1e-13 of the readings' squares, on all scans of `tests/batch.rs`. Where n or p is free,
+//! one of the two rarely misses the lowest of several minima that are nearly alike.
 
 mod basis;
 mod cell;

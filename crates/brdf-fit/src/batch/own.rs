@@ -3,7 +3,7 @@
 use brdf_core::ModelParameters;
 use nalgebra::{DMatrix, DMatrixView};
 
-use crate::model::{PLAIN, Parameter, ReducedModel, axes, widest_of_plain};
+use crate::model::{Grid, PLAIN, ReducedModel};
 use crate::objective::{Objective, ProfileSums, solve_for};
 use crate::solver::descent::{Descent, Rows};
 
@@ -17,14 +17,13 @@ const MOST_MINIMA: usize = 8;
 /// fraction of the readings' squares are not followed.
 const WORSE: f64 = 0.02;
 
-/// The same where k1 alone is searched: a minimum between two widths is not much lower than the grid. A
-/// quarter of it holds for the shorter steps of few readings.
+/// The same where k1 alone is searched: a minimum between two widths is not much lower than the grid.
 const WORSE_ALONG_K1: f64 = 0.01;
 
 /// The columns of the grid and their products, for scans of any weights.
 #[derive(Debug, Clone)]
 pub(super) struct OwnTable {
-    axes: [Vec<f64>; 3],
+    grid: Grid,
     /// u, u u and u a of each point of the grid, one row for each.
     lobes: DMatrix<f64>,
     squares: DMatrix<f64>,
@@ -40,22 +39,9 @@ pub(super) struct OwnScan {
 
 impl OwnTable {
     pub(super) fn new(objective: &Objective, model: ReducedModel) -> Self {
-        let axes = axes(model, objective.n(), objective.count(), 1);
-        let mut columns = Vec::new();
-        for &p in &axes[2] {
-            for &k1 in &axes[0] {
-                for &n in &axes[1] {
-                    let at = ModelParameters {
-                        k2: 1.0,
-                        kd: 0.0,
-                        k1,
-                        n,
-                        p,
-                    };
-                    columns.push(objective.lobe_column(&at));
-                }
-            }
-        }
+        let grid = Grid::new(model, objective.n(), objective.count(), 1);
+        let column = |i| objective.lobe_column(&with_lobe(grid.at(i)));
+        let columns: Vec<Vec<f64>> = (0..grid.len()).map(column).collect();
         let (_, a) = objective.fixed_columns();
         let matrix = |of: &dyn Fn(f64, f64) -> f64| {
             DMatrix::from_fn(columns.len(), a.len(), |i, row| of(columns[i][row], a[row]))
@@ -64,18 +50,7 @@ impl OwnTable {
             lobes: matrix(&|u, _| u),
             squares: matrix(&|u, _| u * u),
             mixed: matrix(&|u, a| u * a),
-            axes,
-        }
-    }
-
-    fn at(&self, i: usize) -> ModelParameters {
-        let [k1, n, _] = self.axes.each_ref().map(Vec::len);
-        ModelParameters {
-            k2: 0.0,
-            kd: 0.0,
-            k1: self.axes[0][i / n % k1],
-            n: self.axes[1][i % n],
-            p: self.axes[2][i / n / k1],
+            grid,
         }
     }
 
@@ -102,7 +77,7 @@ impl OwnTable {
             let weighted = &weighted[i * rows..(i + 1) * rows];
             let aa = a.iter().zip(weights).map(|(a, g)| a * a * g).sum();
             let ay = a.iter().zip(weighted).map(|(a, y)| a * y).sum();
-            let fixed = [Parameter::K2, Parameter::Kd].map(|weight| descent.model.fixed(weight));
+            let fixed = descent.model.fixed_weights();
             let point = |j: usize| {
                 let (uu, ua, uy) = (squares[(j, i)], mixed[(j, i)], measured[(j, i)]);
                 solve_for(fixed, &ProfileSums { uu, ua, uy, aa, ay }).2
@@ -119,16 +94,17 @@ impl OwnTable {
 
     /// The lowest of the minima below those of the grid.
     fn lowest(&self, descent: &Descent<'_>, errors: &[f64], rows: Rows<'_>) -> ModelParameters {
-        let counts = self.axes.each_ref().map(Vec::len);
         let lowest = errors.iter().copied().fold(f64::INFINITY, f64::min);
-        let worse = if counts[1..] == [1, 1] {
+        let worse = if self.grid.is_along_k1() {
             WORSE_ALONG_K1
         } else {
             WORSE
         };
         let is_minimum = |&i: &usize| {
             errors[i] <= lowest + worse
-                && super::table::adjacent(counts, i)
+                && self
+                    .grid
+                    .adjacent(i)
                     .all(|j| errors[i] < errors[j] || (errors[i] == errors[j] && i < j))
         };
         let mut minima: Vec<usize> = (0..errors.len()).filter(is_minimum).collect();
@@ -136,13 +112,26 @@ impl OwnTable {
         minima.truncate(MOST_MINIMA);
         for i in 0..minima.len() {
             let is_plain = |j: usize| errors[j] <= errors[minima[i]] * (1.0 + PLAIN);
-            let widest = widest_of_plain(counts, minima[i], is_plain);
+            let widest = self.grid.widest_of_plain(minima[i], is_plain);
             if !minima.contains(&widest) {
                 minima.push(widest);
             }
         }
-        let descents = minima.into_iter().map(|i| descent.from(self.at(i), rows));
+        let descents = minima
+            .into_iter()
+            .map(|i| descent.from(with_lobe(self.grid.at(i)), rows));
         let best = descents.min_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or(self.at(0), |(at, _)| at)
+        best.map_or(with_lobe(self.grid.at(0)), |(at, _)| at)
+    }
+}
+
+/// The lobe alone at a point of the grid.
+fn with_lobe([k1, n, p]: [f64; 3]) -> ModelParameters {
+    ModelParameters {
+        k2: 1.0,
+        kd: 0.0,
+        k1,
+        n,
+        p,
     }
 }

@@ -127,12 +127,14 @@ pub struct BatchPlan {
     pub(super) objective: Objective,
     /// The rows of the lobe where n is not free.
     pub(super) fixed_index: Option<LobeRows>,
+    /// The number of readings with a weight.
+    pub(super) used: usize,
     /// Whether the rows are in the order of the readings.
     in_order: bool,
     /// The factor of each row on its reading.
     pub(super) factors: Vec<f64>,
-    /// The tables; `None` where a lobe cannot be told from the diffuse part: all scans are then searched
-    /// as those with their own weights.
+    /// The tables; `None` for a model without a lobe, and where a lobe cannot be told from the diffuse part:
+    /// all scans are then searched as those with their own weights.
     pub(super) table: Option<Table>,
     /// The tables of scans with gaps or with their own weights, which are made when they are needed.
     pub(super) own: std::sync::OnceLock<OwnTable>,
@@ -184,6 +186,7 @@ impl BatchPlan {
             .all(|(row, i)| row == *i);
         Ok(Self {
             in_order,
+            used: objective.count() - objective.zero_weight(),
             fixed_index: (!model.frees(Parameter::N)).then(|| objective.lobe_rows()),
             model,
             readings: angles.len(),

@@ -13,6 +13,7 @@ use super::result::{BatchFit, Row, Status};
 use super::scans::Scans;
 use super::search::{BLOCK, Found, Search};
 use crate::model::{K1_RANGE, Parameter};
+use crate::objective::{SIZES, dot_of};
 use crate::solver::descent::{Descent, Rows};
 
 /// The number of scans that a thread takes at a time.
@@ -23,9 +24,6 @@ const CHUNK_OF_DESCENTS: usize = 64;
 
 /// The number of chunks between two calls of the observer.
 const REPORTED: usize = 128;
-
-/// The largest weighted reading, in 1/sr, for which squares stay well within the range of `f64`.
-const SIZES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// Receives the progress of many fits, and may cancel them.
 pub trait BatchObserver {
@@ -246,13 +244,12 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
         run.scans.load(scan, &mut self.readings[column.clone()]);
         let readings = &mut self.readings[column];
         plan.weighted(readings, 1.0, &mut self.y);
-        let squares = crate::objective::dot_of(&self.y, &self.y);
+        let squares = dot_of(&self.y, &self.y);
         let shared = run.weights.is_none() && (self.search.is_some() || !plan.has_lobe());
         let sizes = SIZES.start().powi(2)..=SIZES.end().powi(2);
         if shared && sizes.contains(&squares) {
-            let used = plan.objective.count() - plan.objective.zero_weight();
-            if used <= plan.free() {
-                let used = u32::try_from(used).unwrap_or(u32::MAX);
+            if plan.used <= plan.free() {
+                let used = u32::try_from(plan.used).unwrap_or(u32::MAX);
                 self.rows
                     .push(Row::without_fit(Status::TooFewReadings, used));
                 return Ok(Kind::Other);
@@ -321,9 +318,11 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
         let readings = &self.readings[i * plan.readings..(i + 1) * plan.readings];
         let length = squares.sqrt();
         plan.weighted(readings, 1.0 / length, &mut self.y);
-        match &mut self.search {
-            Some(search) => search.optima(i, squares, &mut self.found),
-            None => self.found = vec![Found::without_lobe(plan.objective.n())],
+        if let Some(search) = &mut self.search {
+            search.optima(i, squares, &mut self.found);
+        } else {
+            self.found.clear();
+            self.found.push(Found::without_lobe(plan.objective.n()));
         }
         let rows = Rows {
             y: &self.y,
@@ -354,9 +353,8 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
                 best = Some(here);
             }
         }
-        let used = plan.objective.count() - plan.objective.zero_weight();
         match best {
-            Some(best) => self.row(best, length, used, rows),
+            Some(best) => self.row(best, length, plan.used, rows),
             None => Row::without_fit(Status::OutOfRange, 0),
         }
     }

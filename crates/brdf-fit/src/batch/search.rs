@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DMatrixView};
 
 use super::cell::{Cell, Line};
 use super::table::{Angle, Table};
-use crate::model::{PLAIN, widest_of_plain};
+use crate::model::PLAIN;
 
 /// The number of scans that are searched together.
 pub(super) const BLOCK: usize = 64;
@@ -135,7 +135,7 @@ impl<'a> Search<'a> {
         let maxima = explained.iter().enumerate().filter(is_maximum);
         to.extend(maxima.map(|(i, &explained)| Found {
             point: i,
-            at: table.at(i),
+            at: table.grid.at(i),
             explained,
         }));
         if to.len() > MOST_MAXIMA {
@@ -155,24 +155,24 @@ impl<'a> Search<'a> {
         let (table, explained) = (self.table, &self.explained);
         let rest = (squares - largest(explained)).max(0.0);
         let least = squares - WORSE * rest - MUCH * squares;
-        let [_, n, _] = table.axes.each_ref().map(Vec::len);
+        let [_, n, _] = table.grid.counts();
         let maximum = |&(i, &value): &(usize, &f64)| {
             // The neighbours along k1 decide most cases at once.
             value >= least
                 && explained.get(i + n).is_none_or(|wider| value >= *wider)
                 && table
+                    .grid
                     .adjacent(i)
                     .all(|j| value > explained[j] || (value == explained[j] && i < j))
         };
         let maxima = explained.iter().enumerate().filter(maximum);
         to.extend(maxima.map(|(i, &explained)| Found {
             point: i,
-            at: table.at(i),
+            at: table.grid.at(i),
             explained,
         }));
         to.sort_by(|a, b| b.explained.total_cmp(&a.explained));
         to.truncate(MOST_STARTS);
-        let counts = table.axes.each_ref().map(Vec::len);
         for i in 0..to.len() {
             let Found {
                 point,
@@ -180,11 +180,11 @@ impl<'a> Search<'a> {
                 ..
             } = to[i];
             let is_plain = |j: usize| explained[j] >= here - PLAIN * (squares - here);
-            let widest = widest_of_plain(counts, point, is_plain);
+            let widest = table.grid.widest_of_plain(point, is_plain);
             if to.iter().all(|found| found.point != widest) {
                 to.push(Found {
                     point: widest,
-                    at: table.at(widest),
+                    at: table.grid.at(widest),
                     explained: explained[widest],
                 });
             }

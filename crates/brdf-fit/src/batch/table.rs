@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::basis::{Basis, norm, remove};
 use super::cell::Cell;
-use crate::model::{Parameter, ReducedModel, axes};
+use crate::model::{Grid, Parameter, ReducedModel};
 use crate::objective::{Objective, dot_of as dot};
 
 /// What the basis leaves of a column where the search ends in it: rounding in E.
@@ -66,8 +66,7 @@ impl Angle {
 /// The tables of a plan.
 #[derive(Debug, Clone)]
 pub(super) struct Table {
-    /// The values of k1, n and p on the axes of the grid; n varies fastest, p slowest.
-    pub(super) axes: [Vec<f64>; 3],
+    pub(super) grid: Grid,
     /// The basis, times the factor of each reading, in the order of the readings: one row for each
     /// column of the basis. Where the model has a diffuse part, the first one is a'.
     pub(super) projection: DMatrix<f64>,
@@ -109,16 +108,8 @@ impl Lobes<'_> {
         let mut column = self.column(k1, n, p);
         // The column of a narrow lobe without a reading at its peak is tiny, and its square underflows.
         let largest = column.iter().fold(0.0_f64, |max, u| max.max(*u));
-        if largest
-            < TINY
-                * self
-                    .objective
-                    .fixed_columns()
-                    .1
-                    .iter()
-                    .copied()
-                    .fold(0.0, f64::max)
-        {
+        let (_, a) = self.objective.fixed_columns();
+        if largest < TINY * a.iter().copied().fold(0.0, f64::max) {
             column.fill(0.0);
         } else if largest > 0.0 {
             for u in &mut column {
@@ -135,12 +126,10 @@ impl Lobes<'_> {
     /// The angle and v of a unit column; `None` where it is parallel to the diffuse column.
     pub(super) fn beside(&self, k1: f64, n: f64, p: f64) -> Option<(Angle, Vec<f64>)> {
         let mut column = self.unit(k1, n, p);
-        let Some(diffuse) = &self.diffuse else {
+        let has_lobe = column.iter().any(|u| *u != 0.0);
+        let Some(diffuse) = self.diffuse.as_ref().filter(|_| has_lobe) else {
             return Some((Angle { cos: 0.0, sin: 1.0 }, column));
         };
-        if column.iter().all(|u| *u == 0.0) {
-            return Some((Angle { cos: 0.0, sin: 1.0 }, column));
-        }
         let cos = dot(&column, diffuse);
         remove(&mut column, diffuse);
         remove(&mut column, diffuse);
@@ -172,27 +161,19 @@ impl Table {
             objective,
             diffuse: has_diffuse.then(|| a.iter().map(|a| a / length).collect()),
         };
-        let axes = if model.frees(Parameter::K1) {
-            axes(model, objective.n(), objective.count(), 1)
-        } else {
-            [Vec::new(), Vec::new(), Vec::new()]
+        let grid = Grid::new(model, objective.n(), objective.count(), 1);
+        let (widths, [_, n, p]) = (&grid.axes[0], grid.at(0));
+        let along_k1 = grid.is_along_k1();
+        let lobe = |i| {
+            let [k1, n, p] = grid.at(i);
+            lobes.beside(k1, n, p)
         };
-        let along_k1 = axes[1].len() <= 1 && axes[2].len() <= 1;
-        let mut angles = Vec::new();
-        let mut points = Vec::new();
-        for &p in &axes[2] {
-            for &k1 in &axes[0] {
-                for &n in &axes[1] {
-                    let (angle, direction) = lobes.beside(k1, n, p)?;
-                    angles.push(angle);
-                    points.push(direction);
-                }
-            }
-        }
+        let of_points: Vec<_> = (0..grid.len()).map(lobe).collect::<Option<_>>()?;
+        let (angles, points): (Vec<Angle>, Vec<Vec<f64>>) = of_points.into_iter().unzip();
         let basis = if along_k1 {
-            let between = between(&axes[0]);
-            let at = |k1: &f64| Some(lobes.beside(*k1, axes[1][0], axes[2][0])?.1);
-            let mut represented: Vec<Vec<f64>> = between.iter().map(at).collect::<Option<_>>()?;
+            let at = |k1: f64| Some(lobes.beside(k1, n, p)?.1);
+            let between = between(widths).into_iter().map(at);
+            let mut represented: Vec<Vec<f64>> = between.collect::<Option<_>>()?;
             represented.extend_from_slice(&points);
             Basis::of(lobes.diffuse.as_deref(), &represented, FINE)
         } else {
@@ -206,12 +187,12 @@ impl Table {
         let coordinates: Vec<Vec<f64>> = points.iter().map(|v| basis.coordinates(v)).collect();
         let directions = DMatrix::from_fn(points.len(), basis.len(), |i, k| coordinates[i][k]);
         let at = |k1: f64| {
-            let (angle, v) = lobes.beside(k1, axes[1][0], axes[2][0])?;
+            let (angle, v) = lobes.beside(k1, n, p)?;
             Some((angle, basis.coordinates(&v)))
         };
-        let cells = (0..axes[0].len())
+        let cells = (0..widths.len())
             .filter(|_| along_k1)
-            .map(|i| Cell::around(&axes[0], i, at));
+            .map(|i| Cell::around(widths, i, at));
         let cells = cells.collect::<Option<Vec<_>>>()?;
         let error = cells.iter().map(|cell| cell.error).fold(0.0, f64::max);
         let mut projection = DMatrix::zeros(basis.len(), readings);
@@ -221,7 +202,6 @@ impl Table {
             }
         }
         Some(Self {
-            axes,
             projection,
             has_diffuse,
             angles,
@@ -229,6 +209,7 @@ impl Table {
             ends_in_minima: along_k1 && error < INTERPOLATED,
             curvature: cells.iter().map(Cell::curvature).fold(0.0, f64::max),
             cells,
+            grid,
         })
     }
 
@@ -236,34 +217,6 @@ impl Table {
     pub(super) fn dimension(&self) -> usize {
         self.projection.nrows()
     }
-
-    /// The widths, indices and exponents of a point.
-    pub(super) fn at(&self, i: usize) -> [f64; 3] {
-        let [k1, n, p] = self.indices(i);
-        [self.axes[0][k1], self.axes[1][n], self.axes[2][p]]
-    }
-
-    /// The indices of a point on the axes.
-    pub(super) fn indices(&self, i: usize) -> [usize; 3] {
-        let [k1, n, _] = self.axes.each_ref().map(Vec::len);
-        [i / n % k1, i % n, i / n / k1]
-    }
-
-    /// The adjacent points along each axis.
-    pub(super) fn adjacent(&self, i: usize) -> impl Iterator<Item = usize> {
-        adjacent(self.axes.each_ref().map(Vec::len), i)
-    }
-}
-
-/// The points of a grid that are adjacent to a point along each axis, for the numbers of values of k1, n
-/// and p.
-pub(super) fn adjacent([k1, n, p]: [usize; 3], i: usize) -> impl Iterator<Item = usize> {
-    let of_axes = [(i / n % k1, k1, n), (i % n, n, 1), (i / n / k1, p, n * k1)];
-    of_axes.into_iter().flat_map(move |(index, count, stride)| {
-        let below = (index > 0).then(|| i - stride);
-        let above = (index + 1 < count).then(|| i + stride);
-        below.into_iter().chain(above)
-    })
 }
 
 /// Widths between those of the grid, at equal steps of their logarithm.

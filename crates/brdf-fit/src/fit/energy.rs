@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::error::FitError;
-use super::grid_search::{GridSearch, fixed_weights};
+use super::grid_search::GridSearch;
 use crate::format::in_degrees;
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::{Objective, ProfileSums, solve_for};
@@ -182,7 +182,7 @@ impl Bounded<'_> {
     /// [`best_weights`](Self::best_weights) for a known largest reflectance.
     fn weights_below(&self, at: &ModelParameters, largest: f64) -> (ModelParameters, f64) {
         let sums = self.objective.profile_sums(at);
-        let Some((k2, kd)) = weights_below(fixed_weights(self.model), &sums, largest) else {
+        let Some((k2, kd)) = weights_below(self.model.fixed_weights(), &sums, largest) else {
             return (*at, f64::INFINITY);
         };
         let bounded = ModelParameters { k2, kd, ..*at };

@@ -53,34 +53,36 @@ pub(super) fn check_globally(
     let descent = Descent { objective, model };
     let (y, _) = objective.fixed_columns();
     let lowest_from = |start| descent.from(start, Rows { y, factors: None }).0;
-    let is_lower =
-        |at: &ModelParameters, here| objective.error(at) < here * (1.0 - LOWER) - ROUNDING;
+    let is_lower = |error: f64, here: f64| error < here * (1.0 - LOWER) - ROUNDING;
     // In a flat valley, a minimiser of E ends where a step gains less than rounding. The little that a
     // descent gains there is no other minimum.
-    let mut parameters = last.parameters;
-    let deepest = lowest_from(parameters);
-    let here = objective.error(&parameters);
-    if is_lower(&deepest, here) {
-        parameters = deepest;
-    }
-    let is_same = objective.error(&deepest) >= here * (1.0 - LITTLE);
-    let own_valley = if is_same { parameters } else { last.parameters };
+    let deepest = lowest_from(last.parameters);
+    let [first, own] = [last.parameters, deepest].map(|at| objective.error(&at));
+    let (mut parameters, mut here) = if is_lower(own, first) {
+        (deepest, own)
+    } else {
+        (last.parameters, first)
+    };
+    let own_valley = if own >= first * (1.0 - LITTLE) {
+        parameters
+    } else {
+        last.parameters
+    };
     let several_axes = model.frees(Parameter::N) || model.frees(Parameter::P);
-    let minima = profile.minima();
-    for minimum in minima.iter().chain(&profile.ends_of_plains(&minima)) {
+    for start in profile.starts() {
         progress.advance()?;
         // A stage that ended in this valley, at or below its grid point, has found its minimum. The steps
         // of n and p are too long for this conclusion.
-        let here = objective.error(&parameters);
         if !several_axes
-            && profile.is_next_to(minimum, &parameters)
-            && here <= objective.error(&minimum.parameters)
+            && profile.is_next_to(&start, &parameters)
+            && here <= objective.error(&start.parameters)
         {
             continue;
         }
-        let lowest = lowest_from(minimum.parameters);
-        if is_lower(&lowest, here) {
-            parameters = lowest;
+        let lowest = lowest_from(start.parameters);
+        let error = objective.error(&lowest);
+        if is_lower(error, here) {
+            (parameters, here) = (lowest, error);
         }
     }
     let report = GlobalCheck {

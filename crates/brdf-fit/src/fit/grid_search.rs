@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
-use crate::model::{PLAIN, Parameter, ReducedModel, axes, widest_of_plain};
+use crate::model::{Grid, PLAIN, Parameter, ReducedModel};
 use crate::objective::{Objective, ProfileSums, solve_for};
 use crate::progress::{Cancelled, Progress};
 
@@ -41,16 +41,11 @@ pub fn best_weights(
     model: ReducedModel,
     at: ModelParameters,
 ) -> ProfilePoint {
-    let (k2, kd, error) = solve_for(fixed_weights(model), &objective.profile_sums(&at));
+    let (k2, kd, error) = solve_for(model.fixed_weights(), &objective.profile_sums(&at));
     ProfilePoint {
         parameters: ModelParameters { k2, kd, ..at },
         error,
     }
-}
-
-/// The values of k2 and kD that are fixed.
-pub(crate) fn fixed_weights(model: ReducedModel) -> [Option<f64>; 2] {
-    [Parameter::K2, Parameter::Kd].map(|weight| model.fixed(weight))
 }
 
 /// The scalar products at each point of the grid, for each fold of the incidences.
@@ -58,8 +53,7 @@ pub(crate) fn fixed_weights(model: ReducedModel) -> [Option<f64>; 2] {
 pub(crate) struct GridSearch {
     /// k2 and kD where they are fixed.
     weights: [Option<f64>; 2],
-    /// The values of k1, n and p on the axes of the grid.
-    axes: [Vec<f64>; 3],
+    grid: Grid,
     /// uu, ua and uy, indexed by p, k1, n and fold; the fold varies fastest.
     lobe: Vec<[f64; 3]>,
     /// aa, ay, yy of each fold.
@@ -122,8 +116,9 @@ impl GridSearch {
         step: usize,
         progress: &Progress<'_>,
     ) -> Result<Self, Cancelled> {
-        let axes = axes(model, objective.n(), objective.count(), step);
-        let fresnel: Vec<Cow<'_, [f64]>> = axes[1]
+        let grid = Grid::new(model, objective.n(), objective.count(), step);
+        let [widths, indices, exponents] = &grid.axes;
+        let fresnel: Vec<Cow<'_, [f64]>> = indices
             .iter()
             .map(|&n| objective.fresnel_column(n))
             .collect();
@@ -132,8 +127,8 @@ impl GridSearch {
         let folds = objective.folds();
         let mut lobe = Vec::new();
         let mut shape = Vec::new();
-        for &p in &axes[2] {
-            for &k1 in &axes[0] {
+        for &p in exponents {
+            for &k1 in widths {
                 progress.advance()?;
                 let start = lobe.len();
                 lobe.resize(start + fresnel.len() * folds, [0.0; 3]);
@@ -157,8 +152,8 @@ impl GridSearch {
             add(&mut fixed[i % folds], &products, 1.0);
         }
         Ok(Self {
-            weights: fixed_weights(model),
-            axes,
+            weights: model.fixed_weights(),
+            grid,
             lobe,
             fixed,
             is_of_all_rows: true,
@@ -195,43 +190,11 @@ impl GridSearch {
 }
 
 impl Profile<'_> {
-    /// The indices of a point on the axes of k1, n and p.
-    fn indices(&self, i: usize) -> [usize; 3] {
-        let [k1, n, _] = self.search.axes.each_ref().map(Vec::len);
-        [i / n % k1, i % n, i / n / k1]
-    }
-
-    fn index(&self, [k1, n, p]: [usize; 3]) -> usize {
-        let [k1_count, n_count, _] = self.search.axes.each_ref().map(Vec::len);
-        (p * k1_count + k1) * n_count + n
-    }
-
     fn point(&self, i: usize) -> ProfilePoint {
-        let [k1, n, p] = self.indices(i);
+        let [k1, n, p] = self.search.grid.at(i);
         let (k2, kd, error) = self.points[i];
-        let parameters = ModelParameters {
-            k2,
-            kd,
-            k1: self.search.axes[0][k1],
-            n: self.search.axes[1][n],
-            p: self.search.axes[2][p],
-        };
+        let parameters = ModelParameters { k2, kd, k1, n, p };
         ProfilePoint { parameters, error }
-    }
-
-    /// The adjacent points along each axis.
-    fn adjacent(&self, indices: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
-        let counts = self.search.axes.each_ref().map(Vec::len);
-        (0..3).flat_map(move |axis| {
-            let moved = move |to: usize| {
-                let mut indices = indices;
-                indices[axis] = to;
-                indices
-            };
-            let below = indices[axis].checked_sub(1).map(moved);
-            let above = (indices[axis] + 1 < counts[axis]).then(|| moved(indices[axis] + 1));
-            below.into_iter().chain(above)
-        })
     }
 
     /// The lowest point.
@@ -248,59 +211,50 @@ impl Profile<'_> {
         points
     }
 
+    /// Where descents start: the lowest local minima of the grid, in ascending order of E, and then the
+    /// wide ends of their plains.
+    pub(crate) fn starts(&self) -> Vec<ProfilePoint> {
+        let error = |i: usize| self.points[i].2;
+        let grid = &self.search.grid;
+        let minima = self.minima();
+        let ends = minima.iter().filter_map(|&i| {
+            let end = grid.widest_of_plain(i, |j| error(j) <= error(i) * (1.0 + PLAIN));
+            (end != i).then_some(end)
+        });
+        let all = minima.iter().copied().chain(ends);
+        all.map(|i| self.point(i)).collect()
+    }
+
     /// The lowest local minima of the grid, in ascending order of E.
-    pub(crate) fn minima(&self) -> Vec<ProfilePoint> {
-        let is_minimum = |i: usize| {
-            let error = self.points[i].2;
-            self.adjacent(self.indices(i))
-                .map(|indices| self.index(indices))
-                .all(|j| error < self.points[j].2 || (error == self.points[j].2 && i < j))
+    fn minima(&self) -> Vec<usize> {
+        let error = |i: usize| self.points[i].2;
+        let is_minimum = |&i: &usize| {
+            let mut adjacent = self.search.grid.adjacent(i);
+            adjacent.all(|j| error(i) < error(j) || (error(i) == error(j) && i < j))
         };
-        let indices = (0..self.points.len()).filter(|&i| is_minimum(i));
-        let mut minima: Vec<usize> = indices.collect();
-        minima.sort_by(|a, b| self.points[*a].2.total_cmp(&self.points[*b].2));
+        let mut minima: Vec<usize> = (0..self.points.len()).filter(is_minimum).collect();
+        minima.sort_by(|a, b| error(*a).total_cmp(&error(*b)));
         // The minima of a plain are its rounding: they would take the place of others.
-        let mut is_first_of_plain = true;
-        minima.retain(|&i| !self.is_on_plain(i) || std::mem::take(&mut is_first_of_plain));
-        minima.truncate(MOST_MINIMA);
-        minima.into_iter().map(|i| self.point(i)).collect()
-    }
-
-    /// The wide ends of the plains of the [`minima`](Self::minima), where descents start as well.
-    pub(crate) fn ends_of_plains(&self, minima: &[ProfilePoint]) -> Vec<ProfilePoint> {
-        let counts = self.search.axes.each_ref().map(Vec::len);
-        let end = |minimum: &ProfilePoint| {
-            let place = (0..self.points.len()).find(|i| self.point(*i) == *minimum)?;
-            let is_plain = |i: usize| self.points[i].2 <= minimum.error * (1.0 + PLAIN);
-            let end = widest_of_plain(counts, place, is_plain);
-            (end != place).then(|| self.point(end))
+        let is_on_plain = |i: usize| {
+            let mut adjacent = self.search.grid.adjacent(i);
+            adjacent.all(|j| error(j) - error(i) <= SAME)
         };
-        minima.iter().filter_map(end).collect()
-    }
-
-    /// Whether E differs from that of all adjacent points by rounding only.
-    fn is_on_plain(&self, i: usize) -> bool {
-        let adjacent = self
-            .adjacent(self.indices(i))
-            .map(|indices| self.index(indices));
-        adjacent
-            .into_iter()
-            .all(|j| self.points[j].2 - self.points[i].2 <= SAME)
+        let mut is_first_of_plain = true;
+        minima.retain(|&i| !is_on_plain(i) || std::mem::take(&mut is_first_of_plain));
+        minima.truncate(MOST_MINIMA);
+        minima
     }
 
     /// Whether parameters lie between the points that are adjacent to a point of the grid.
     pub(crate) fn is_next_to(&self, point: &ProfilePoint, at: &ModelParameters) -> bool {
         let parameters = [Parameter::K1, Parameter::N, Parameter::P];
-        self.search
-            .axes
-            .iter()
-            .zip(parameters)
-            .all(|(axis, parameter)| {
-                let (centre, value) = (parameter.of(&point.parameters), parameter.of(at));
-                let i = axis.iter().position(|x| *x == centre).unwrap_or(0);
-                let (low, high) = (axis[i.saturating_sub(1)], axis[(i + 1).min(axis.len() - 1)]);
-                axis.len() == 1 || (low..=high).contains(&value)
-            })
+        let axes = self.search.grid.axes.iter();
+        axes.zip(parameters).all(|(axis, parameter)| {
+            let (centre, value) = (parameter.of(&point.parameters), parameter.of(at));
+            let i = axis.iter().position(|x| *x == centre).unwrap_or(0);
+            let (low, high) = (axis[i.saturating_sub(1)], axis[(i + 1).min(axis.len() - 1)]);
+            axis.len() == 1 || (low..=high).contains(&value)
+        })
     }
 
     /// The lowest point of the profile at each value of k1, n or p.
@@ -310,9 +264,9 @@ impl Profile<'_> {
             Parameter::P => 2,
             _ => 0,
         };
-        let mut lowest: Vec<Option<usize>> = vec![None; self.search.axes[axis].len()];
+        let mut lowest: Vec<Option<usize>> = vec![None; self.search.grid.counts()[axis]];
         for i in 0..self.points.len() {
-            let best = &mut lowest[self.indices(i)[axis]];
+            let best = &mut lowest[self.search.grid.indices(i)[axis]];
             if best.is_none_or(|j| self.points[i].2 < self.points[j].2) {
                 *best = Some(i);
             }
@@ -405,7 +359,9 @@ mod tests {
             let profile = search.whole();
             for i in (0..profile.points.len()).step_by(37) {
                 let point = profile.point(i);
-                assert_eq!(profile.index(profile.indices(i)), i);
+                let [k1, n, p] = search.grid.indices(i);
+                let [widths, indices, _] = search.grid.counts();
+                assert_eq!((p * widths + k1) * indices + n, i);
                 let error = objective.error(&point.parameters);
                 assert!((error - point.error).abs() < 1e-12, "{model}");
                 let exact = best_weights(&objective, model.into(), point.parameters);
@@ -441,8 +397,8 @@ mod tests {
         let scan = Measurements::new("test", readings).unwrap();
         let objective = Objective::new(&scan, Family::Paper, 1.5, &Weights::default()).unwrap();
         let search = search_of(&objective, Model::Three);
-        let minima = search.whole().minima();
-        assert_eq!(minima[0].parameters.k1, K1_RANGE.0);
+        let starts = search.whole().starts();
+        assert_eq!(starts[0].parameters.k1, K1_RANGE.0);
     }
 
     proptest! {

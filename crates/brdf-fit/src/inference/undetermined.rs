@@ -6,7 +6,7 @@ use brdf_core::ModelParameters;
 use super::estimate::{Estimate, Interval, Knowledge};
 use super::uncertainty::Width;
 use crate::fit::Solution;
-use crate::fit::grid_search::{ProfilePoint, fixed_weights};
+use crate::fit::grid_search::ProfilePoint;
 use crate::model::{K1_RANGE, Parameter};
 use crate::objective::solve_for;
 use crate::progress::{Cancelled, Progress};
@@ -75,7 +75,7 @@ impl Undetermined {
         }
         let at = fitted.fit.at();
         let searched = fitted.searched();
-        let kd = fixed_weights(model)[1];
+        let kd = model.fixed_weights()[1];
         let (_, _, without_lobe) = solve_for([Some(0.0), kd], &searched.profile_sums(&at));
         Ok(Self {
             profiles,

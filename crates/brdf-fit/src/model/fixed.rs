@@ -173,6 +173,11 @@ pub struct ReducedModel {
 }
 
 impl ReducedModel {
+    /// The values of k2 and kD that are not fitted.
+    pub(crate) fn fixed_weights(self) -> [Option<f64>; 2] {
+        [Parameter::K2, Parameter::Kd].map(|weight| self.fixed(weight))
+    }
+
     /// The model with these parameters fixed. Parameters that the model does not fit are ignored.
     pub fn new(model: Model, fixed: FixedParameters) -> Self {
         let mut parameters = Parameter::ALL;

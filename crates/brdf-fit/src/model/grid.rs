@@ -21,26 +21,85 @@ const EXPONENTS: [f64; 12] = [
     0.1, 0.16, 0.25, 0.4, 0.63, 1.0, 1.6, 2.5, 4.0, 6.3, 10.0, 16.0,
 ];
 
-/// The values of k1, n and p on the axes of the grid of a model, for a number of readings. A parameter
-/// that is not free has one value: the fixed one, or for the refractive index `n`. Of n and p, one of
-/// `stride` values is taken.
-pub(crate) fn axes(model: ReducedModel, n: f64, readings: usize, stride: usize) -> [Vec<f64>; 3] {
-    let axis = |parameter, all: &[f64], stride| {
-        if model.frees(parameter) {
-            all.iter().copied().step_by(stride).collect()
-        } else {
-            vec![model.fixed(parameter).unwrap_or(n)]
+/// The grid of k1, n and p. In the order of its points, n varies fastest and p slowest.
+#[derive(Debug, Clone)]
+pub(crate) struct Grid {
+    /// The values of k1, n and p.
+    pub(crate) axes: [Vec<f64>; 3],
+}
+
+impl Grid {
+    /// The grid of a model, for a number of readings. A parameter that is not free has one value: the
+    /// fixed one, or for the refractive index `n`. Of n and p, one of `stride` values is taken.
+    pub(crate) fn new(model: ReducedModel, n: f64, readings: usize, stride: usize) -> Self {
+        let axis = |parameter, all: &[f64], stride| {
+            if model.frees(parameter) {
+                all.iter().copied().step_by(stride).collect()
+            } else {
+                vec![model.fixed(parameter).unwrap_or(n)]
+            }
+        };
+        Self {
+            axes: [
+                axis(Parameter::K1, &widths(readings), 1),
+                axis(Parameter::N, &INDICES, stride),
+                axis(Parameter::P, &EXPONENTS, stride),
+            ],
         }
-    };
-    [
-        axis(Parameter::K1, &widths(readings), 1),
-        axis(Parameter::N, &INDICES, stride),
-        axis(Parameter::P, &EXPONENTS, stride),
-    ]
+    }
+
+    /// The number of values of k1, n and p.
+    pub(crate) fn counts(&self) -> [usize; 3] {
+        self.axes.each_ref().map(Vec::len)
+    }
+
+    /// The number of points.
+    pub(crate) fn len(&self) -> usize {
+        self.counts().iter().product()
+    }
+
+    /// Whether k1 alone varies.
+    pub(crate) fn is_along_k1(&self) -> bool {
+        self.counts()[1..] == [1, 1]
+    }
+
+    /// The indices of a point on the axes.
+    pub(crate) fn indices(&self, i: usize) -> [usize; 3] {
+        let [k1, n, _] = self.counts();
+        [i / n % k1, i % n, i / n / k1]
+    }
+
+    /// k1, n and p of a point.
+    pub(crate) fn at(&self, i: usize) -> [f64; 3] {
+        let [k1, n, p] = self.indices(i);
+        [self.axes[0][k1], self.axes[1][n], self.axes[2][p]]
+    }
+
+    /// The adjacent points along each axis.
+    pub(crate) fn adjacent(&self, i: usize) -> impl Iterator<Item = usize> + use<> {
+        let [k1, n, p] = self.counts();
+        let of_axes = [(i / n % k1, k1, n), (i % n, n, 1), (i / n / k1, p, n * k1)];
+        of_axes.into_iter().flat_map(move |(index, count, stride)| {
+            let below = (index > 0).then(|| i - stride);
+            let above = (index + 1 < count).then(|| i + stride);
+            below.into_iter().chain(above)
+        })
+    }
+
+    /// The widest point, along k1 from a point, up to which all points belong to its plain.
+    ///
+    /// Far below the distance of the readings, the width of a lobe has no effect, and no slope leads out
+    /// of there: descents start at the wide end as well.
+    pub(crate) fn widest_of_plain(&self, start: usize, is_plain: impl Fn(usize) -> bool) -> usize {
+        let [k1, n, _] = self.counts();
+        let steps = k1 - 1 - self.indices(start)[0];
+        let wider = (1..=steps).map(|step| start + step * n);
+        wider.take_while(|i| is_plain(*i)).last().unwrap_or(start)
+    }
 }
 
 /// The widths of the grid, from the lower to the upper end of their range.
-pub(crate) fn widths(readings: usize) -> Vec<f64> {
+fn widths(readings: usize) -> Vec<f64> {
     let steps = if readings < FEW_READINGS {
         4 * STEPS
     } else {
@@ -57,18 +116,3 @@ pub(crate) fn widths(readings: usize) -> Vec<f64> {
 
 /// On a plain, E differs from its lowest value by less than this fraction.
 pub(crate) const PLAIN: f64 = 1e-3;
-
-/// The widest point, along k1 from a point of the grid, up to which all points belong to its plain. The
-/// numbers of values are those of k1, n and p; n varies fastest.
-///
-/// Far below the distance of the readings, the width of a lobe has no effect, and no slope leads out of
-/// there: descents start at the wide end.
-pub(crate) fn widest_of_plain(
-    [k1, n, _]: [usize; 3],
-    start: usize,
-    is_plain: impl Fn(usize) -> bool,
-) -> usize {
-    let steps = k1 - 1 - start / n % k1;
-    let wider = (1..=steps).map(|step| start + step * n);
-    wider.take_while(|i| is_plain(*i)).last().unwrap_or(start)
-}

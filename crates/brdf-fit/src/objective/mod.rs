@@ -20,5 +20,5 @@ pub use error::ObjectiveError;
 pub use evaluation::NormalEquations;
 pub(crate) use evaluation::{ProfileSums, ROUNDING};
 pub(crate) use lobe::LobeRows;
-pub(crate) use rows::Segment;
 pub use rows::{IncidenceError, MOST_FOLDS, Objective};
+pub(crate) use rows::{SIZES, Segment};

@@ -18,7 +18,7 @@ use crate::scan::Measurements;
 
 /// Range of the largest weighted reading, in 1/sr, for which all squares and their products stay
 /// well within the range of `f64`. It is far wider than that of any BRDF.
-const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
+pub(crate) const SIZES: RangeInclusive<f64> = 1e-30..=1e30;
 
 /// The largest number of folds of cross-validation and resampling: more incidences than this are
 /// left out, or drawn, several at a time.

@@ -116,14 +116,9 @@ struct Local {
 }
 
 impl Descent<'_> {
-    /// The values of k2 and kD that are fixed.
-    fn weights(&self) -> [Option<f64>; 2] {
-        [Parameter::K2, Parameter::Kd].map(|weight| self.model.fixed(weight))
-    }
-
     fn local(&self, at: ModelParameters, derivatives: [bool; 3], rows: Rows<'_>) -> Local {
         let products = Products::at(self.objective, &at, derivatives, rows);
-        let fixed = self.weights();
+        let fixed = self.model.fixed_weights();
         let (k2, kd, error) = solve_for(fixed, &products.sums());
         Local {
             at: ModelParameters { k2, kd, ..at },

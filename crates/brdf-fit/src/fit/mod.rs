@@ -7,6 +7,7 @@
 
 pub(crate) mod energy;
 mod error;
+mod first_stage;
 mod global_check;
 pub(crate) mod grid_search;
 mod options;

@@ -10,6 +10,7 @@ use brdf_core::{ModelParameters, Parameters};
 
 use super::energy::{EnergyConstraint, constrain_energy};
 use super::error::FitError;
+use super::first_stage::FirstStage;
 use super::global_check::{Checked, check_globally};
 use super::grid_search::GridSearch;
 use super::options::FitOptions;
@@ -18,12 +19,12 @@ use super::result::{FORMAT_VERSION, Fit, OwnAndAll, Stage};
 use super::robust::{RobustFit, RobustWeights, fit_robustly};
 use super::solution::{Searched, Solution};
 use super::start::{InitialValues, Section, initial_values};
-use crate::format::{counted, in_degrees};
+use crate::format::in_degrees;
 use crate::model::{DEFAULT_N, FixedParameters, Parameter, ReducedModel};
 use crate::objective::weights::AssumedErrors;
 use crate::objective::{Objective, Segment};
 use crate::progress::{Cancelled, NoObserver, Observer, Phase, Progress};
-use crate::scan::{Incidence, Measurements, up_to};
+use crate::scan::{Incidence, Measurements};
 use crate::solver::{Method, minimise};
 
 /// The problem of fitting one model to a scan of one wavelength.
@@ -39,21 +40,6 @@ pub struct FitProblem<'a> {
     model: ReducedModel,
     all: Objective,
     first_stage: FirstStage,
-}
-
-/// The readings of the first stage.
-#[derive(Debug, Clone)]
-struct FirstStage {
-    /// The incidences that the initial values are taken from, where the rows of the objective are not
-    /// readings.
-    incidences: Vec<Incidence>,
-    /// The number of its incidences; `None` where they are all.
-    part: Option<usize>,
-    /// E over the readings of the stage, where they are a part and the stage is alone. Before another
-    /// stage, it is made for the time of the stage.
-    objective: Option<Objective>,
-    /// Why stage 1 is left out although the options ask for it.
-    left_out: Option<String>,
 }
 
 impl<'a> FitProblem<'a> {
@@ -436,40 +422,6 @@ struct Refined {
     robust: Option<RobustFit>,
     robust_weights: Option<RobustWeights>,
     energy: Option<EnergyConstraint>,
-}
-
-impl FirstStage {
-    fn choose(all: &Objective, measurements: &Measurements, options: &FitOptions) -> Self {
-        let chosen = up_to(all.segments(), |segment| segment.psi, options.stage1_limit);
-        let count = chosen.len();
-        let readings: usize = chosen.iter().map(|segment| segment.readings).sum();
-        let (own, left_out) = if options.stage1.is_none() || readings == all.count() {
-            (None, None)
-        } else if readings <= options.reduced_model().free().len() {
-            let limit_deg = in_degrees(options.stage1_limit);
-            let readings = counted(readings, "reading");
-            (None, Some(format!("{readings} up to {limit_deg} deg")))
-        } else {
-            match all.subset(|i| i < count) {
-                Ok(objective) => (Some(objective), None),
-                Err(error) => (None, Some(error.to_string())),
-            }
-        };
-        let mut incidences = if all.readings().is_empty() {
-            measurements.incidences()
-        } else {
-            Vec::new()
-        };
-        if own.is_some() {
-            incidences.truncate(count);
-        }
-        Self {
-            incidences,
-            part: own.is_some().then_some(count),
-            objective: own.filter(|_| options.stage2.is_none()),
-            left_out,
-        }
-    }
 }
 
 /// The weights and the width, with the values of those that are fixed.

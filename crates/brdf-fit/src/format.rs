@@ -9,9 +9,6 @@
 //! assert_eq!(in_degrees(41.4_f64.to_radians()), 41.4);
 //! ```
 
-use std::collections::HashSet;
-use std::hash::Hash;
-
 /// A text that is not a value of the expected kind, as a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
@@ -69,8 +66,12 @@ pub fn listed(names: &[impl AsRef<str>], separator: &str) -> String {
 }
 
 /// Each item once, in the order of first occurrence.
-pub(crate) fn distinct<T: Eq + Hash + Clone>(all: impl IntoIterator<Item = T>) -> Vec<T> {
-    let mut known = HashSet::new();
+#[cfg(feature = "export")]
+pub(crate) fn distinct<T>(all: impl IntoIterator<Item = T>) -> Vec<T>
+where
+    T: Eq + std::hash::Hash + Clone,
+{
+    let mut known = std::collections::HashSet::new();
     let all = all.into_iter();
     all.filter(|item| known.insert(item.clone())).collect()
 }

@@ -7,7 +7,8 @@ use crate::brdf::MicrofacetBrdf;
 use crate::facet::FacetDistribution;
 use crate::fresnel::Dielectric;
 use crate::geometry::{Geometry, GeometryError};
-use crate::numeric::integrate;
+use crate::numeric::{Adaptive, Quadrature, Rough};
+use crate::parameters::Parameters;
 use crate::shadowing::Shadowing;
 
 /// The largest incidence angle of the energy check, in radians (89 deg).
@@ -19,6 +20,12 @@ const ENERGY_CHECK_TOLERANCE: f64 = 1e-3;
 /// The number of steps of the energy check up to its limit. The reflectance is a smooth function of
 /// the incidence angle without narrow features, so that steps of 5.6 deg suffice.
 const ENERGY_CHECK_STEPS: u32 = 16;
+
+/// The number of angles at which the energy check computes rough reflectances first.
+const ROUGH_STEPS: u32 = 5;
+
+/// No reflectance exceeds 1 where all rough ones are below this.
+const SURELY_BELOW_ONE: f64 = 0.7;
 
 impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     /// The directional-hemispherical reflectance, dimensionless: the integral of f_r cos theta over
@@ -61,7 +68,7 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
     ///
     /// A reflectance above 1 violates the conservation of energy.
     pub fn energy_violation_angle(&self) -> Option<f64> {
-        if self.reflectance_bound() < 1.0 {
+        if self.reflectance_bound() < 1.0 || self.is_surely_below_one() {
             return None;
         }
         let excess = |psi: f64| {
@@ -84,6 +91,19 @@ impl<F: FacetDistribution, S: Shadowing> MicrofacetBrdf<F, S> {
             }
         }
         Some(above)
+    }
+
+    /// Whether rough reflectances at a few angles of the energy check are so far below 1 that no other
+    /// exceeds it: the reflectance is smooth, and the rough ones are within a few percent.
+    fn is_surely_below_one(&self) -> bool {
+        let Parameters { k2, kd, .. } = self.parameters();
+        let mut angles = (0..ROUGH_STEPS)
+            .map(|step| ENERGY_CHECK_LIMIT * (1.0 - f64::from(step) / f64::from(ROUGH_STEPS - 1)));
+        angles.all(|psi| {
+            let (facet, shadowing) = (self.facet(), self.shadowing());
+            let specular = specular_part(facet, shadowing, &self.fresnel(), psi, &Rough);
+            k2 * specular + kd < SURELY_BELOW_ONE
+        })
     }
 
     /// A bound that no hemispherical reflectance exceeds: kD + 2 R(0)/R_n(0), with the facet
@@ -138,6 +158,23 @@ pub fn specular_reflectance<F: FacetDistribution, S: Shadowing>(
     if !(0.0..=FRAC_PI_2).contains(&psi) {
         return Err(GeometryError::Incidence(psi));
     }
+    Ok(specular_part(
+        facet,
+        shadowing,
+        fresnel,
+        psi,
+        &Adaptive(tolerance),
+    ))
+}
+
+/// [`specular_reflectance`] for psi in [0, pi/2).
+fn specular_part(
+    facet: impl FacetDistribution,
+    shadowing: impl Shadowing,
+    fresnel: &Dielectric,
+    psi: f64,
+    quadrature: &impl Quadrature,
+) -> f64 {
     let width = facet.k1().min(1.0);
     let ring = |u: f64| {
         let (sinh, cosh) = (u.sinh(), u.cosh());
@@ -147,7 +184,7 @@ pub fn specular_reflectance<F: FacetDistribution, S: Shadowing>(
         let area = width * width * sinh * cosh / (sec_alpha * (1.0 + t));
         facet.relative(t, sec_alpha)
             * area
-            * facet_ring(shadowing, fresnel, psi, t, 0.1 * tolerance)
+            * facet_ring(shadowing, fresnel, psi, t, &quadrature.of_values())
     };
     let mut breaks = [
         0.0,
@@ -162,7 +199,7 @@ pub fn specular_reflectance<F: FacetDistribution, S: Shadowing>(
     .map(|alpha: f64| alpha.min(FRAC_PI_4 + 0.5 * psi))
     .map(|alpha| (alpha.tan() / width).asinh());
     breaks.sort_by(f64::total_cmp);
-    Ok(8.0 / PI * integrate(&ring, breaks, tolerance))
+    8.0 / PI * quadrature.integrate(&ring, breaks)
 }
 
 /// The integral over beta in [0, pi] of cos gamma R0(gamma) G / cos psi, for the facets of one
@@ -172,7 +209,7 @@ fn facet_ring(
     fresnel: &Dielectric,
     psi: f64,
     t: f64,
-    tolerance: f64,
+    quadrature: &impl Quadrature,
 ) -> f64 {
     let cos_alpha = 1.0 / (1.0 + t).sqrt();
     let sin_alpha = t.sqrt() * cos_alpha;
@@ -202,7 +239,7 @@ fn facet_ring(
     let mut breaks =
         [0.0, source_side, view_side, equal_angles, horizon].map(|beta: f64| beta.min(horizon));
     breaks.sort_by(f64::total_cmp);
-    integrate(&facet, breaks, tolerance)
+    quadrature.integrate(&facet, breaks)
 }
 
 #[cfg(test)]
@@ -320,6 +357,55 @@ mod tests {
                     (rough / fine - 1.0).abs() < 1e-5,
                     "{k1} {psi_deg}: {rough} {fine}"
                 );
+            }
+        }
+    }
+
+    #[test]
+    fn rough_reflectances_decide_as_the_search_does() {
+        for family in Family::ALL {
+            for k1 in [1e-6, 1e-3, 0.03, 0.1, 0.3, 0.7, 1.0, 3.0, 30.0, 1e3] {
+                for n in [1.0, 1.01, 1.5, 2.5, 6.0, 1e3] {
+                    let at = ModelParameters {
+                        k2: 1.0,
+                        kd: 0.0,
+                        k1,
+                        n,
+                        p: 1.3,
+                    };
+                    assert_rough_check_is_safe(&AnyBrdf::new(family, &at).unwrap(), &at);
+                }
+            }
+        }
+    }
+
+    /// Scales a lobe so that its largest rough reflectance is the threshold: no other is above 1.
+    fn assert_rough_check_is_safe(brdf: &AnyBrdf, at: &ModelParameters) {
+        let rho = |psi: f64| brdf.hemispherical_reflectance(psi, 1e-2).unwrap();
+        let rough = (0..ROUGH_STEPS)
+            .map(|step| rho(ENERGY_CHECK_LIMIT * f64::from(step) / f64::from(ROUGH_STEPS - 1)));
+        let rough = rough.fold(0.0, f64::max);
+        let fine = (0..30).map(|step| rho(ENERGY_CHECK_LIMIT * f64::from(step) / 29.0));
+        let fine = fine.fold(0.0, f64::max);
+        assert!(
+            fine / rough * SURELY_BELOW_ONE < 0.95,
+            "{at:?}: {rough} {fine}"
+        );
+    }
+
+    #[test]
+    fn rough_reflectances_are_near_the_others() {
+        for k1 in [1e-6, 1e-3, 0.1, 1.0, 30.0, 1e6] {
+            for n in [1.0, 1.5, 4.0] {
+                let brdf =
+                    ThreeParameterBrdf::new(Parameters::new(1.0, 0.0, k1).unwrap(), n).unwrap();
+                for psi_deg in [0.0_f64, 22.25, 44.5, 66.75, 89.0] {
+                    let psi = psi_deg.to_radians();
+                    let (facet, shadowing) = (brdf.facet(), brdf.shadowing());
+                    let rough = specular_part(facet, shadowing, &brdf.fresnel(), psi, &Rough);
+                    let ratio = rough / reflectance(&brdf, psi_deg);
+                    assert!((ratio - 1.0).abs() < 0.05, "{k1} {n} {psi_deg}: {ratio}");
+                }
             }
         }
     }

@@ -17,7 +17,7 @@ pub use real::{Elementary, Fused, Primitive, Real};
 
 pub(crate) use carried::Carried;
 pub(crate) use half_angle::{HalfAngle, half_of_azimuth};
-pub(crate) use quadrature::integrate;
+pub(crate) use quadrature::{Adaptive, Quadrature, Rough, integrate};
 pub(crate) use real::horner;
 pub(crate) use trigonometry::{
     cos_quarter, sin_cos_quarter, sin_eighth, sin2_cos2_of_any_half, sin2_cos2_of_half,

@@ -1,4 +1,4 @@
-//! Adaptive integration by the Gauss-Kronrod rule.
+//! Integration by the Gauss-Kronrod rule: adaptive, or by the Gauss rule alone.
 
 /// The positive nodes of the 15-point Kronrod rule on [-1, 1], each with its weight in that rule and
 /// in the 7-point Gauss rule, which uses every second node and has weight 0 at the others (Kronrod
@@ -31,6 +31,53 @@ const CENTRE: (f64, f64) = (0.209_482_141_084_727_82, 0.417_959_183_673_469_4);
 /// The number of halvings in one integral, after which the estimates are accepted as they are. It is
 /// ten times the number that a peak with kinks needs and ends the work on divergent integrals.
 const MAX_HALVINGS: u32 = 500;
+
+/// A way to integrate a non-negative function over the panels between ascending `breaks`, and the
+/// functions that are integrals themselves.
+pub(crate) trait Quadrature {
+    /// The integral.
+    fn integrate<const N: usize>(&self, f: &impl Fn(f64) -> f64, breaks: [f64; N]) -> f64;
+
+    /// How the values of such a function are integrated.
+    fn of_values(&self) -> Self;
+}
+
+/// To this relative tolerance, by [`integrate`].
+#[derive(Clone, Copy)]
+pub(crate) struct Adaptive(pub(crate) f64);
+
+impl Quadrature for Adaptive {
+    fn integrate<const N: usize>(&self, f: &impl Fn(f64) -> f64, breaks: [f64; N]) -> f64 {
+        integrate(f, breaks, self.0)
+    }
+
+    fn of_values(&self) -> Self {
+        Self(0.1 * self.0)
+    }
+}
+
+/// By the Gauss rule of 7 points in each panel, without an estimate of the error.
+#[derive(Clone, Copy)]
+pub(crate) struct Rough;
+
+impl Quadrature for Rough {
+    fn integrate<const N: usize>(&self, f: &impl Fn(f64) -> f64, breaks: [f64; N]) -> f64 {
+        let panels = breaks.windows(2).filter(|ends| ends[0] < ends[1]);
+        let panel = |ends: &[f64]| {
+            let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
+            let gauss = NODES.iter().filter(|(.., weight)| *weight > 0.0);
+            let pairs = gauss.map(|&(node, _, weight)| {
+                weight * (f(middle - half * node) + f(middle + half * node))
+            });
+            half * (CENTRE.1 * f(middle) + pairs.sum::<f64>())
+        };
+        panels.map(panel).sum()
+    }
+
+    fn of_values(&self) -> Self {
+        *self
+    }
+}
 
 /// The integral of a non-negative function over the panels between ascending `breaks`.
 ///

@@ -31,12 +31,14 @@
 //!
 //! Without default features the crate has no programs, figures, exports or trade-offs: it reads,
 //! fits, assesses and reports. `plot` adds figures, `export` forms for other programs, `tradeoff`
-//! measured trade-offs; `cli` (the default) enables all three and adds the programs `brdf` and
-//! `fit`.
+//! measured trade-offs, `workbook` spreadsheets, `cube` arrays of NumPy; `cli` (the default) enables all of them
+//! and adds the programs `brdf` and `fit`. `parquet` writes the fits of an array as Parquet as well.
 
 pub mod batch;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "cube")]
+pub mod cube;
 #[cfg(feature = "export")]
 pub mod export;
 mod fit;
@@ -68,9 +70,9 @@ pub use format::ParseError;
 pub use inference::{
     ASSESSED_BINS, ASSESSED_READINGS, Assessment, Candidate, CrossValidation, Deviations,
     ErrorSizes, Estimate, Hint, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise,
-    NoiseTests, Physics, PredictedIncidence, Quality, Reflectance, RelativePrediction, Reliance,
-    TEST_LEVEL, Uncertainty, VERDICT_MARGIN, Verdict, Warning, Without, assess, most_influential,
-    rests_on,
+    NoiseTests, ParameterIntervals, Physics, PredictedIncidence, Quality, Reflectance,
+    RelativePrediction, Reliance, TEST_LEVEL, Uncertainty, VERDICT_MARGIN, Verdict, Warning,
+    Without, assess, intervals_of_many, most_influential, rests_on,
 };
 pub use model::{
     DEFAULT_N, FixedError, FixedParameters, K1_RANGE, Model, N_RANGE, Parameter, ReducedModel,

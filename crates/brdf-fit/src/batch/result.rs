@@ -25,6 +25,17 @@ pub enum Status {
 }
 
 impl Status {
+    /// All, in the order of their numbers.
+    pub const ALL: [Self; 7] = [
+        Self::Fitted,
+        Self::NoLobe,
+        Self::NoDiffuse,
+        Self::WidthAtEnd,
+        Self::TooFewReadings,
+        Self::AllZero,
+        Self::OutOfRange,
+    ];
+
     /// Whether there are parameters.
     pub fn is_fitted(self) -> bool {
         matches!(

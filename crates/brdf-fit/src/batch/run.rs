@@ -140,12 +140,7 @@ impl<'a, T: Copy + Into<f64> + Sync> BatchRun<'a, T> {
         let expected = self.plan.readings();
         let given = [Some(&self.scans), self.weights.as_ref()];
         for scans in given.into_iter().flatten() {
-            if scans.readings != expected && !scans.is_empty() {
-                return Err(BatchError::Readings {
-                    found: scans.readings,
-                    expected,
-                });
-            }
+            scans.check(expected)?;
         }
         match &self.weights {
             Some(weights) if weights.len() != self.scans.len() => Err(BatchError::WeightRows {

@@ -67,6 +67,19 @@ impl<'a, T> Scans<'a, T> {
         self.count
     }
 
+    /// # Errors
+    ///
+    /// The scans have another number of readings.
+    pub(crate) fn check(&self, readings: usize) -> Result<(), BatchError> {
+        if self.readings == readings || self.is_empty() {
+            return Ok(());
+        }
+        Err(BatchError::Readings {
+            found: self.readings,
+            expected: readings,
+        })
+    }
+
     /// Whether there are no scans.
     pub fn is_empty(&self) -> bool {
         self.count == 0
@@ -76,7 +89,7 @@ impl<'a, T> Scans<'a, T> {
 impl<T: Copy + Into<f64>> Scans<'_, T> {
     /// Copies the readings of a scan.
     #[inline]
-    pub(super) fn load(&self, scan: usize, to: &mut [f64]) {
+    pub(crate) fn load(&self, scan: usize, to: &mut [f64]) {
         let start = scan * self.scan_stride;
         if self.reading_stride == 1 {
             let values = &self.values[start..start + to.len()];

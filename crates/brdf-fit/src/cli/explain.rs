@@ -3,6 +3,7 @@
 
 use std::fmt::Display;
 
+use crate::cube::CubeError;
 use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::inference::{Hint, Warning};
@@ -56,6 +57,24 @@ pub(super) fn read(error: &ReadError) -> String {
         _ => return error.to_string(),
     };
     with_hint(error, hint)
+}
+
+/// Why the scans of an array cannot be fitted.
+pub(super) fn cube(error: &CubeError) -> String {
+    match error {
+        CubeError::Ambiguous { .. } => with_hint(error, "--axis DIMENSION"),
+        _ => error.to_string(),
+    }
+}
+
+/// Which outputs of the fits of an array there are.
+pub(super) fn cube_output() -> &'static str {
+    if cfg!(feature = "parquet") {
+        "expected a name that ends in .npy or .parquet for --output"
+    } else {
+        "expected a name that ends in .npy for --output (a program built with --features parquet also writes \
+         .parquet)"
+    }
 }
 
 /// Why the ways to fit a scan cannot be compared.

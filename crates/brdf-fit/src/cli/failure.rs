@@ -8,6 +8,7 @@ use brdf_core::scene::DomainError;
 
 use super::explain;
 use super::stream::{StreamError, shown};
+use crate::cube::CubeError;
 use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::format::listed;
@@ -47,6 +48,14 @@ pub(super) enum Failure {
     Export(#[from] ExportError),
     #[error("{}", explain::fit(.0))]
     Fit(#[from] FitError),
+    #[error("{}", explain::cube(.0))]
+    Cube(#[from] CubeError),
+    #[error("{}: {}", .0.display(), explain::cube_output())]
+    CubeOutput(PathBuf),
+    #[error(
+        "--model auto chooses a model for each scan: expected one model for all scans of --cube"
+    )]
+    CubeModel,
     #[error("{}", explain::tradeoff(.0))]
     Tradeoff(#[from] TradeoffError),
     /// A failure that concerns one file, or one wavelength of it.

@@ -17,6 +17,7 @@ mod cross_validation;
 mod deviations;
 mod estimate;
 mod hint;
+mod many;
 mod model_comparison;
 mod noise;
 mod physics;
@@ -36,6 +37,7 @@ pub use cross_validation::{CrossValidation, PredictedIncidence, RelativePredicti
 pub use deviations::{Deviations, Quality};
 pub use estimate::{Estimate, Interval, Knowledge};
 pub use hint::Hint;
+pub use many::{ParameterIntervals, intervals_of_many};
 pub use model_comparison::{ASSESSED_BINS, ASSESSED_READINGS, Candidate, LeftOut};
 pub use noise::{ErrorSizes, Noise, NoiseTests, TEST_LEVEL};
 pub use physics::{Physics, Reflectance};

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 
+use super::cube::CubeArguments;
 use super::values::{
     DEFAULT_LIMIT, ModelArgument, Pairs, ReadingWeights, declaration, methods_or_none, pairs,
     parse_energy_limit, parse_limit, parse_model,
@@ -37,7 +38,7 @@ use crate::scan::{Format, RefractiveIndex, Side};
 )]
 pub(in crate::cli) struct Arguments {
     /// Scans, in any of the formats of --format; - is standard input
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required_unless_present = "cube", value_name = "FILE")]
     pub(super) files: Vec<PathBuf>,
 
     /// Fit with the options of an earlier run, from the file that it wrote with --json
@@ -192,6 +193,9 @@ pub(in crate::cli) struct Arguments {
     /// Print the parameters as CSV, one line for each fit, instead of the tables
     #[arg(long)]
     pub(super) params_only: bool,
+
+    #[command(flatten)]
+    pub(super) cube: CubeArguments,
 }
 
 /// The options of a fit, which `--again` takes from a file.

@@ -1,6 +1,7 @@
 //! `brdf fit`: fits scans, and prints or writes the result.
 
 mod arguments;
+mod cube;
 mod output;
 mod run;
 mod settings;

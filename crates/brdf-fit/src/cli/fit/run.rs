@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use rayon::prelude::*;
 
 use super::arguments::Arguments;
+use super::cube;
 use super::output::deliver;
 use crate::cli::explain;
 use crate::cli::failure::Failure;
@@ -22,6 +23,9 @@ use crate::scan::Measurements;
 /// Fits all scans, and prints and writes the results. A problem with one scan or one output does
 /// not prevent the others.
 pub(in crate::cli) fn run(arguments: &Arguments) -> Outcome {
+    if arguments.cube.is_given() {
+        return cube::run(arguments);
+    }
     let prepared = arguments
         .check_files()
         .and_then(|in_use| Ok((in_use, arguments.document()?)));

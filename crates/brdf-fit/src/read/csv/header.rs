@@ -1,6 +1,6 @@
 //! The lines before the rows: comments, lines of free text, and the header that names the columns.
 
-use super::roles::Roles;
+use super::roles::{Roles, Rows};
 use crate::read::comments::{Comments, comment_of};
 use crate::read::error::{ReadError, Remedy};
 use crate::read::fields::Separator;
@@ -34,7 +34,11 @@ pub(super) fn is_header(line: &[u8], renamed: &[(String, String)]) -> bool {
     if line.iter().filter(is_letter).take(6).count() < 6 {
         return false;
     }
-    header_of(line, renamed).is_some_and(|(_, columns)| is_complete(&columns, needs_psi))
+    let needs = Needs {
+        psi: needs_psi,
+        reading: true,
+    };
+    header_of(line, renamed).is_some_and(|(_, columns)| is_complete(&columns, needs))
 }
 
 /// The names of the columns in a comment `format: theta phi DSF`.
@@ -64,8 +68,16 @@ fn header_of(line: &[u8], renamed: &[(String, String)]) -> Option<(Separator, Ve
     best.map(|(_, separator, columns)| (separator, columns))
 }
 
-/// Whether the columns have angles and a reading; the incidence angle may also stand in a comment.
-fn is_complete(columns: &[Column], needs_psi: bool) -> bool {
+/// What a header must name beside the view angle.
+#[derive(Clone, Copy)]
+struct Needs {
+    /// The incidence angle, which may also stand in a comment.
+    psi: bool,
+    reading: bool,
+}
+
+/// Whether the columns have angles and a reading, as far as these are needed.
+fn is_complete(columns: &[Column], needs: Needs) -> bool {
     let has = |wanted: fn(&Role) -> bool| {
         let mut roles = columns.iter().filter_map(|column| column.role.as_ref());
         roles.any(wanted)
@@ -83,7 +95,7 @@ fn is_complete(columns: &[Column], needs_psi: bool) -> bool {
             Role::Value(_) | Role::Channel(_) | Role::Polarised(..)
         )
     }) || has(|role| *role == Role::Signal) && has(|role| *role == Role::Reference);
-    reading && zeniths >= if needs_psi { 2 } else { 1 }
+    (reading || !needs.reading) && zeniths >= if needs.psi { 2 } else { 1 }
 }
 
 /// A column by its header.
@@ -127,7 +139,11 @@ impl Preamble {
     /// # Errors
     ///
     /// A line is too long, a comment is not valid, or there is no header.
-    pub(super) fn read(text: &Text<'_>, options: &ReadOptions) -> Result<Self, ReadError> {
+    pub(super) fn read(
+        text: &Text<'_>,
+        rows: Rows,
+        options: &ReadOptions,
+    ) -> Result<Self, ReadError> {
         let mut comments = Comments::declared(text, &options.declarations)?;
         let mut search = Search::default();
         let mut lines_after = 0;
@@ -140,7 +156,11 @@ impl Preamble {
                     number,
                     line: names.or(comment).unwrap_or(line),
                     is_comment: comment.is_some(),
-                    needs_psi: comment.is_some() && names.is_none(),
+                    // A sentence in a comment may contain other names.
+                    needs: Needs {
+                        psi: comment.is_some() && names.is_none(),
+                        reading: rows == Rows::Readings,
+                    },
                 };
                 search.take(&candidate, &options.columns);
                 if search.header.is_some() {
@@ -158,7 +178,7 @@ impl Preamble {
             best,
         } = search;
         let Some(header) = header else {
-            return Err(no_header(text, best.as_ref()));
+            return Err(no_header(text, best.as_ref(), rows));
         };
         header.check_names(text, &options.columns)?;
         Ok(Self {
@@ -176,8 +196,7 @@ struct Candidate<'a> {
     /// The text without a leading `#` and `format:`.
     line: &'a [u8],
     is_comment: bool,
-    /// Whether it must name the incidence angle: a sentence in a comment may contain other names.
-    needs_psi: bool,
+    needs: Needs,
 }
 
 /// The search for the header.
@@ -196,7 +215,7 @@ impl Search {
             number,
             line,
             is_comment,
-            needs_psi,
+            needs,
         } = candidate;
         if line.trim_ascii().is_empty()
             || line.starts_with(b"sep=")
@@ -211,7 +230,7 @@ impl Search {
         });
         match found {
             // A sentence may contain the names of columns, but a header has nothing else.
-            Some(header) if is_complete(&header.columns, needs_psi) => {
+            Some(header) if is_complete(&header.columns, needs) => {
                 self.header = Some(header);
                 return;
             }
@@ -228,18 +247,28 @@ impl Search {
 }
 
 /// The error of a text without a header: what was understood of the line that is nearest to one.
-fn no_header(text: &Text<'_>, best: Option<&Header>) -> ReadError {
-    const EXPECTED: &str = "expected a line that names the columns, such as psi_deg, theta_deg and \
-                            brdf_per_sr";
+fn no_header(text: &Text<'_>, best: Option<&Header>, rows: Rows) -> ReadError {
+    let names = if rows == Rows::Angles {
+        "psi_deg and theta_deg"
+    } else {
+        "psi_deg, theta_deg and brdf_per_sr"
+    };
+    let expected = format!("expected a line that names the columns, such as {names}");
     let Some(header) = best else {
         let mut lines = text.lines().map(|(_, line)| line);
         let first = lines.find(|line| comment_of(line).is_none() && !line.trim_ascii().is_empty());
         let found = first.map_or_else(String::new, |line| {
             format!(", found \"{}\"", quotable(line))
         });
-        return text.error(format!("has no header: {EXPECTED}{found}"));
+        return text.error(format!("has no header: {expected}{found}"));
     };
-    let missing = header.missing().join(" and ");
+    let mut missing = header.missing();
+    missing.truncate(if rows == Rows::Angles {
+        1
+    } else {
+        missing.len()
+    });
+    let missing = missing.join(" and ");
     header.unclear(text, &format!("no column for {missing}:"))
 }
 
@@ -394,7 +423,7 @@ impl Header {
     /// # Errors
     ///
     /// Two columns have one role, or a role is missing.
-    pub(super) fn roles(&self, text: &Text<'_>) -> Result<Roles, ReadError> {
-        Roles::of(&self.columns).map_err(|message| text.line_error(self.number, message))
+    pub(super) fn roles(&self, text: &Text<'_>, rows: Rows) -> Result<Roles, ReadError> {
+        Roles::of(&self.columns, rows).map_err(|message| text.line_error(self.number, message))
     }
 }

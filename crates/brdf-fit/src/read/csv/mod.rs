@@ -48,6 +48,7 @@
 //! decimal comma, the minus sign of typesetting and the exponent of Fortran (`1.1D-01`) are read, as are a
 //! byte order mark and the line ends of all systems.
 
+mod angles;
 mod header;
 mod roles;
 mod row;
@@ -67,8 +68,9 @@ use super::options::ReadOptions;
 use super::reader::{Content, Reader};
 use super::text::{Text, head_lines, read_bytes};
 use crate::scan::{Convention, Format, Measurement, Measurements};
+pub use angles::AngleTable;
 use header::{Header, Preamble, is_header};
-use roles::{Readings, Roles};
+use roles::{Readings, Roles, Rows};
 use row::{Found, IndexColumn, Row, RowReader};
 
 pub(super) const READER: Reader = Reader {
@@ -184,8 +186,8 @@ pub(super) fn read(text: Text<'_>, options: &ReadOptions) -> Result<Measurements
         header,
         lines_after,
         skipped,
-    } = Preamble::read(&text, options)?;
-    let reader = reader(&text, &header, &comments, options)?;
+    } = Preamble::read(&text, Rows::Readings, options)?;
+    let reader = reader(&text, &header, &comments, Rows::Readings, options)?;
     let mut found = Found::default();
     found.readings.reserve(lines_after);
     let mut indices = IndexColumn::default();
@@ -221,9 +223,10 @@ fn reader(
     text: &Text<'_>,
     header: &Header,
     comments: &Comments,
+    rows: Rows,
     options: &ReadOptions,
 ) -> Result<RowReader, ReadError> {
-    let roles = header.roles(text)?;
+    let roles = header.roles(text, rows)?;
     let of_header = |message: String| text.line_error(header.number, message);
     let values = comments
         .values(quantity(header, &roles))
@@ -267,7 +270,7 @@ fn quantity(header: &Header, roles: &Roles) -> Quantity {
             _ => Quantity::BRDF,
         },
         Readings::Ratio(..) => Quantity::of(Kind::ReflectanceFactor),
-        Readings::Polarised(..) | Readings::Channels(_) => Quantity::BRDF,
+        Readings::Polarised(..) | Readings::Channels(_) | Readings::None => Quantity::BRDF,
     }
 }
 
@@ -381,7 +384,7 @@ fn conversions(header: &Header, reader: &RowReader, found: &Found, skipped: usiz
             let quantity = reader.values.quantity;
             all.push(format!("{count} columns of wavelengths hold {quantity}"));
         }
-        (Readings::One(_), _) => {}
+        (Readings::One(_) | Readings::None, _) => {}
     }
     all.extend(reader.values.conversions());
     if found.mirrored > 0 {

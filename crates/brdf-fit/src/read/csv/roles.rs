@@ -20,6 +20,15 @@ pub(super) struct Roles {
     pub(super) unknown: Vec<usize>,
 }
 
+/// What a row of a table is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rows {
+    /// Readings and their angles.
+    Readings,
+    /// Angles alone.
+    Angles,
+}
+
 /// The columns of the readings.
 pub(super) enum Readings {
     /// One reading a row.
@@ -30,13 +39,15 @@ pub(super) enum Readings {
     Ratio(usize, usize),
     /// A reading at each wavelength in um.
     Channels(Vec<(usize, f64)>),
+    /// The rows are angles alone.
+    None,
 }
 
 impl Roles {
     /// # Errors
     ///
     /// Two columns have one role, there is no view angle, or the reading is given in several ways.
-    pub(super) fn of(columns: &[Column]) -> Result<Self, String> {
+    pub(super) fn of(columns: &[Column], rows: Rows) -> Result<Self, String> {
         let columns = Columns(columns);
         // "s" is the scatter where the incidence has its own column, and the source where the view has.
         let s_is_source = columns.all(|role| matches!(role, Role::Psi(_))).is_empty();
@@ -53,7 +64,10 @@ impl Roles {
             matches!(role, Role::ViewAzimuth(_)) || !s_is_source && matches!(role, Role::PhiS(_))
         })?;
         let wavelength = columns.wavelength()?;
-        let readings = columns.readings()?;
+        let readings = match rows {
+            Rows::Angles => Readings::None,
+            Rows::Readings => columns.readings()?,
+        };
         if let (Readings::Channels(_), Some((i, _))) = (&readings, wavelength) {
             return Err(format!(
                 "\"{}\" is a wavelength, and the readings have a column for each wavelength",
@@ -61,7 +75,8 @@ impl Roles {
             ));
         }
         let sigma = columns.one(|role| *role == Role::Sigma)?;
-        if let (Some(i), false) = (sigma, matches!(readings, Readings::One(_))) {
+        let may_have_sigma = matches!(readings, Readings::One(_) | Readings::None);
+        if let (Some(i), false) = (sigma, may_have_sigma) {
             return Err(format!(
                 "\"{}\" is a standard deviation, which is read beside a single column of readings only: \
                  say that it is to be ignored, or choose one column",

@@ -130,6 +130,17 @@ impl RowReader {
                 let ratio = signal.map(|signal| signal / reference);
                 add(*column, ratio, wavelength_um, None)
             }
+            Readings::None => {
+                found.readings.push(Measurement {
+                    wavelength_um: None,
+                    psi: directions.psi,
+                    theta,
+                    phi,
+                    brdf: f64::NAN,
+                    sigma: None,
+                });
+                Ok(())
+            }
             Readings::Channels(channels) => {
                 let mut channels = channels.iter();
                 channels

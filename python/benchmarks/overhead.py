@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
+from scans import FILE
 
 import brdf_fit as bf
 
 SCANS = 100_000
-FILE = Path(__file__).parents[2] / "data" / "measured" / "z307_on_aluminium.csv"
 
 
 def best(work: Callable[[], object], runs: int) -> float:

@@ -74,6 +74,10 @@ def broadcast(
 
     Raises ValueError where the shapes do not broadcast.
     """
+    shape = arrays[0].shape
+    # Most calls have arrays of one shape; NumPy's functions would take longer than all else of a call.
+    if all(array.shape == shape for array in arrays):
+        return shape, [_flat(array, shape) for array in arrays]
     try:
         shape = np.broadcast(*arrays).shape
     except ValueError:
@@ -86,4 +90,6 @@ def _flat(array: NDArray[Any], shape: tuple[int, ...]) -> NDArray[Any]:
     """The array in this shape as one axis, copied only where it is broadcast or strided."""
     if array.shape != shape:
         array = np.broadcast_to(array, shape)
+    if array.flags.c_contiguous and array.flags.aligned:
+        return array if array.ndim == 1 else array.reshape(-1)
     return np.require(array, requirements=["C", "ALIGNED"]).reshape(-1)

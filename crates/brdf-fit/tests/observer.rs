@@ -166,6 +166,42 @@ fn the_choice_of_a_model_can_be_cancelled() {
     assert!(fit(&bright(), &options()).is_ok());
 }
 
+/// The report with the fit comes once, from the same computation: no stage runs twice.
+#[test]
+fn the_fit_is_reported_before_the_rest_of_its_analysis() {
+    let (observer, parts) = (Recorder::default(), Mutex::new(Vec::new()));
+    let (whole, error) = Report::observed_in_parts(
+        &bright(),
+        &options(),
+        ModelChoice::Given,
+        Depth::Assessed,
+        &observer,
+        &|report| {
+            assert!(observer.of(Phase::Assessment).is_empty());
+            parts.lock().unwrap().push(report.clone());
+        },
+    );
+    assert_eq!(error, None);
+    let parts = parts.into_inner().unwrap();
+    let [part] = parts.as_slice() else {
+        panic!("{} reports", parts.len());
+    };
+    assert!(part.assessment.is_none() && whole.assessment.is_some());
+    assert_eq!(part.fit, whole.fit);
+    assert_eq!(part.uncertainty, whole.uncertainty);
+    assert_eq!(part.warnings, whole.warnings);
+    let starts = observer.of(Phase::Stage1);
+    let starts = starts
+        .iter()
+        .filter(|step| step.iteration == 0 && step.parameters.is_some());
+    assert_eq!(starts.count(), 1);
+    let (plain, _) = Report::new(&bright(), &options(), Depth::Assessed);
+    let fits = [&whole, &plain].map(|report| without_times(report.fit.clone().unwrap()));
+    assert_eq!(fits[0], fits[1]);
+    assert_eq!(whole.uncertainty, plain.uncertainty);
+    assert_eq!(whole.assessment, plain.assessment);
+}
+
 #[test]
 fn phases_have_words() {
     assert_eq!(

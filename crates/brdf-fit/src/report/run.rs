@@ -142,6 +142,19 @@ impl Report {
         depth: Depth,
         observer: &dyn Observer,
     ) -> (Self, Option<FitError>) {
+        Self::observed_in_parts(measurements, options, choice, depth, observer, &|_| {})
+    }
+
+    /// [`observed`](Self::observed), which also calls `on_fit` with the report as soon as the fit, its
+    /// intervals and its warnings are complete: the rest of the analysis takes much longer.
+    pub fn observed_in_parts(
+        measurements: &Measurements,
+        options: &FitOptions,
+        choice: ModelChoice,
+        depth: Depth,
+        observer: &dyn Observer,
+        on_fit: &dyn Fn(&Self),
+    ) -> (Self, Option<FitError>) {
         let mut report = Self {
             file: measurements.source.clone(),
             metadata: measurements.metadata.clone(),
@@ -164,8 +177,8 @@ impl Report {
             rejected: Vec::new(),
         };
         let filled = match choice {
-            ModelChoice::Given => report.fill(measurements, options, depth, observer),
-            ModelChoice::Auto => report.fill_chosen(measurements, options, depth, observer),
+            ModelChoice::Given => report.fill(measurements, options, depth, observer, on_fit),
+            ModelChoice::Auto => report.fill_chosen(measurements, options, depth, observer, on_fit),
         };
         let error = filled.err();
         report.error = error.as_ref().map(ToString::to_string);
@@ -178,6 +191,7 @@ impl Report {
         options: &FitOptions,
         depth: Depth,
         observer: &dyn Observer,
+        on_fit: &dyn Fn(&Self),
     ) -> Result<(), FitError> {
         // If no model can be fitted, this is the paper's, whose fit reports why.
         self.model = sufficient_model(measurements, options, observer)?;
@@ -186,6 +200,7 @@ impl Report {
             &options.with_model(self.model),
             depth,
             observer,
+            on_fit,
         )
     }
 
@@ -195,6 +210,7 @@ impl Report {
         options: &FitOptions,
         depth: Depth,
         observer: &dyn Observer,
+        on_fit: &dyn Fn(&Self),
     ) -> Result<(), FitError> {
         let fitted = fit_scan(measurements, options, observer)?;
         if let Some(robust) = &fitted.fit.robust {
@@ -202,7 +218,8 @@ impl Report {
             let rejected = robust.rejected.iter().map(|r| readings[r.reading]);
             self.rejected = rejected.collect();
         }
-        let fit = self.fit.insert(fitted.fit.clone());
+        let fit = fitted.fit.clone();
+        self.fit = Some(fit.clone());
         let progress = Progress::begin(observer, Phase::Uncertainty)?;
         let tests = if depth > Depth::Fit {
             Tests::Made
@@ -213,14 +230,15 @@ impl Report {
         let fitted_readings = options.fitted_readings(measurements);
         self.warnings = warnings(&fitted_readings, fitted, &uncertainty, &progress)?;
         self.uncertainty = Some(uncertainty).filter(|u| !u.estimates.is_empty());
+        on_fit(self);
         if depth >= Depth::Assessed {
-            self.deviations = Deviations::of(&fitted_readings, fit);
+            self.deviations = Deviations::of(&fitted_readings, &fit);
             if let Some(uncertainty) = &self.uncertainty {
                 self.gain_of_relative_weights =
-                    gain_of_relative_weights(measurements, fit, uncertainty, &progress)?;
+                    gain_of_relative_weights(measurements, &fit, uncertainty, &progress)?;
             }
             let compare = depth == Depth::Compared;
-            self.assessment = Some(assess_observed(measurements, fit, compare, observer)?);
+            self.assessment = Some(assess_observed(measurements, &fit, compare, observer)?);
         }
         Ok(())
     }

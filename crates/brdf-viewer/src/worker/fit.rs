@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use brdf_fit::read::ReadError;
 use brdf_fit::report::{Depth, ModelChoice, Report};
-use brdf_fit::{Observer, Phase, Step};
+use brdf_fit::{Observer, Step};
 
 use super::events::EventSender;
 use super::panics::catch_panics;
@@ -24,20 +24,16 @@ impl FitObserver<'_> {
     fn is_cancelled(&self) -> bool {
         self.cancel.iter().any(|flag| flag.is_cancelled())
     }
-
-    fn flow(&self) -> ControlFlow<()> {
-        if self.is_cancelled() {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
 }
 
 impl Observer for FitObserver<'_> {
     fn step(&self, step: &Step) -> ControlFlow<()> {
         self.events.send(Event::Step(self.scan, *step));
-        self.flow()
+        if self.is_cancelled() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 }
 
@@ -77,34 +73,24 @@ fn fit(job: &FitJob, depth: Depth, observer: &FitObserver) -> Result<Report, Rea
         Some(table) => table.measurements()?,
         None => Cow::Borrowed(&*job.measurements),
     };
-    let report = |depth, observer: &dyn Observer| {
-        let choice = ModelChoice::Given;
-        let fitted = Report::observed(&measurements, &job.options, choice, depth, observer);
-        Report {
-            left_out: job.left_out.clone(),
-            ..fitted.0
+    let choice = ModelChoice::Given;
+    let of_job = |report: Report| Report {
+        left_out: job.left_out.clone(),
+        ..report
+    };
+    let send_found = |found: &Report| {
+        if depth > Depth::Fit && !observer.is_cancelled() {
+            let found = Box::new(of_job(found.clone()));
+            observer.events.send(Event::Found(job.scan, found));
         }
     };
-    if depth == Depth::Fit {
-        return Ok(report(depth, observer));
-    }
-    let found = report(Depth::Fit, observer);
-    if found.error.is_some() || observer.is_cancelled() {
-        return Ok(found);
-    }
-    let event = Event::Found(job.scan, Box::new(found));
-    observer.events.send(event);
-    Ok(report(depth, &AnalysisObserver(observer)))
-}
-
-/// Of the second fit only the analysis is reported: its stages are those of the first.
-struct AnalysisObserver<'a>(&'a FitObserver<'a>);
-
-impl Observer for AnalysisObserver<'_> {
-    fn step(&self, step: &Step) -> ControlFlow<()> {
-        if matches!(step.phase, Phase::Uncertainty | Phase::Assessment) {
-            return self.0.step(step);
-        }
-        self.0.flow()
-    }
+    let (report, _) = Report::observed_in_parts(
+        &measurements,
+        &job.options,
+        choice,
+        depth,
+        observer,
+        &send_found,
+    );
+    Ok(of_job(report))
 }

@@ -79,7 +79,7 @@ pub use model::{
 };
 pub use objective::weights::{AngleWeight, AssumedErrors, RELATIVE_FLOOR, Weights, solid_angles};
 pub use objective::{IncidenceError, MOST_FOLDS, NormalEquations, Objective, ObjectiveError};
-pub use progress::{Cancelled, NoObserver, Observer, Phase, Step};
+pub use progress::{Cancelled, NoObserver, Observer, Part, Phase, Step, Task};
 pub use read::{LazyScan, ReadError, ReadOptions};
 pub use report::{Depth, Document, DocumentError, ModelChoice, Report};
 pub use scan::{

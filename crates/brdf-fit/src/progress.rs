@@ -43,6 +43,41 @@ impl fmt::Display for Phase {
     }
 }
 
+/// What is done a known number of times in a phase.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Task {
+    /// The prediction of incidences from a fit of the other incidences.
+    CrossValidation,
+    /// The fit of a model of the comparison, with its own cross-validation.
+    Model,
+}
+
+impl fmt::Display for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::CrossValidation => "cross-validation",
+            Self::Model => "model",
+        })
+    }
+}
+
+/// A part of a phase that begins. It is shown as `cross-validation 3 of 5`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Part {
+    /// What is done.
+    pub task: Task,
+    /// The number of this part, from 1.
+    pub number: usize,
+    /// The number of all such parts.
+    pub count: usize,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {} of {}", self.task, self.number, self.count)
+    }
+}
+
 /// One step of a phase.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
@@ -51,6 +86,9 @@ pub struct Step {
     /// The iteration within the phase, from 0. In the stages, 0 is the start and the following ones
     /// are the iterations of the minimiser; in the other phases, each pass of the main loop counts.
     pub iteration: u64,
+    /// The part of the phase that begins with this step, where parts are counted. Models are fitted on
+    /// several threads, and beside the cross-validation.
+    pub part: Option<Part>,
     /// E in percent, over the readings of the phase and with their weights; `None` for a step that
     /// does not evaluate E.
     pub e_percent: Option<f64>,
@@ -124,20 +162,30 @@ impl<'a> Progress<'a> {
 
     /// Reports one more step, without numbers.
     pub(crate) fn advance(&self) -> Result<(), Cancelled> {
-        self.notify(None)
+        self.notify(None, None)
+    }
+
+    /// Reports one more step, with which a part begins.
+    pub(crate) fn begin_part(&self, part: Part) -> Result<(), Cancelled> {
+        self.notify(Some(part), None)
     }
 
     /// Reports one more step, with the current parameters and E as a fraction.
     pub(crate) fn advance_to(&self, error: f64, at: &ModelParameters) -> Result<(), Cancelled> {
         // The refits of the last phases are not states of the fit itself.
         let shown = !matches!(self.phase, Phase::Uncertainty | Phase::Assessment);
-        self.notify(shown.then_some((error, at)))
+        self.notify(None, shown.then_some((error, at)))
     }
 
-    fn notify(&self, at: Option<(f64, &ModelParameters)>) -> Result<(), Cancelled> {
+    fn notify(
+        &self,
+        part: Option<Part>,
+        at: Option<(f64, &ModelParameters)>,
+    ) -> Result<(), Cancelled> {
         let step = Step {
             phase: self.phase,
             iteration: self.next.fetch_add(self.stride, Ordering::Relaxed),
+            part,
             e_percent: at.map(|(error, _)| 100.0 * error),
             parameters: at.map(|(_, parameters)| *parameters),
         };

@@ -7,7 +7,7 @@ use brdf_core::Parameters;
 use brdf_fit::synthetic::scan;
 use brdf_fit::{
     Depth, Fit, FitError, FitOptions, Loss, Measurements, Method, ModelChoice, Observer, Phase,
-    RefractiveIndex, Report, Stage, Step, fit, fit_observed,
+    RefractiveIndex, Report, Stage, Step, Task, fit, fit_observed,
 };
 
 const PHASES: [Phase; 7] = [
@@ -164,6 +164,36 @@ fn the_choice_of_a_model_can_be_cancelled() {
     let (report, error) = Report::observed(&bright(), &options(), auto, Depth::Fit, &observer);
     assert_eq!((report.fit, error), (None, Some(FitError::Cancelled)));
     assert!(fit(&bright(), &options()).is_ok());
+}
+
+#[test]
+fn the_assessment_counts_incidences_and_models() {
+    let observer = Recorder::default();
+    let given = ModelChoice::Given;
+    let (report, _) = Report::observed(&bright(), &options(), given, Depth::Assessed, &observer);
+    let steps = observer.of(Phase::Assessment);
+    let parts: Vec<_> = steps.iter().filter_map(|step| step.part).collect();
+    let numbers = |task: Task, count: usize| {
+        let of_task = parts.iter().filter(|part| part.task == task);
+        let mut numbers: Vec<usize> = of_task
+            .map(|part| {
+                assert_eq!(part.count, count);
+                part.number
+            })
+            .collect();
+        numbers.sort_unstable();
+        assert!(numbers.into_iter().eq(1..=count), "{task}: {parts:?}");
+    };
+    numbers(Task::CrossValidation, bright().incidences().len());
+    let assessment = report.assessment.unwrap();
+    let models = assessment.models.len() + assessment.left_out.len();
+    numbers(Task::Model, models);
+    let texts: Vec<String> = parts.iter().map(ToString::to_string).collect();
+    assert!(
+        texts.contains(&"cross-validation 3 of 8".to_owned()),
+        "{texts:?}"
+    );
+    assert!(texts.contains(&format!("model 2 of {models}")), "{texts:?}");
 }
 
 /// The report with the fit comes once, from the same computation: no stage runs twice.

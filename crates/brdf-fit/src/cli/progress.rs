@@ -15,7 +15,7 @@ pub(super) fn bar(count: usize) -> ProgressBar {
     bar
 }
 
-/// Shows the phase of one fit beside the bar.
+/// Shows the phase of one fit, or the part of it, beside the bar.
 pub(super) struct PhaseMessage<'a> {
     pub(super) bar: &'a ProgressBar,
     /// The scan, as messages name it.
@@ -24,9 +24,10 @@ pub(super) struct PhaseMessage<'a> {
 
 impl Observer for PhaseMessage<'_> {
     fn step(&self, step: &Step) -> ControlFlow<()> {
-        if step.iteration == 0 {
-            self.bar
-                .set_message(format!("{}: {}", self.scan, step.phase));
+        let begun = step.part.map(|part| part.to_string());
+        let begun = begun.or_else(|| (step.iteration == 0).then(|| step.phase.to_string()));
+        if let Some(begun) = begun {
+            self.bar.set_message(format!("{}: {begun}", self.scan));
         }
         ControlFlow::Continue(())
     }

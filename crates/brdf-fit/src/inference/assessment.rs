@@ -146,14 +146,19 @@ impl Diagnostics {
             ..options.clone()
         };
         let fitted = fit_scan(scan, &own, progress)?;
-        let fits = Refitter::new(&fitted, progress)?.without_each_fold()?;
-        let sensitivity = sensitivity(&fitted.objective, &fits);
         let plain = least_squares(options);
+        let refitter = Refitter::new(&fitted, progress)?;
+        let fits = if plain == own {
+            refitter.cross_validating()?
+        } else {
+            refitter.without_each_fold()?
+        };
+        let sensitivity = sensitivity(&fitted.objective, &fits);
         let cross_validation = if plain == own {
             cross_validation(&fitted.objective, &fits)
         } else {
             let fitted = fit_scan(scan, &plain, progress)?;
-            let fits = Refitter::new(&fitted, progress)?.without_each_fold()?;
+            let fits = Refitter::new(&fitted, progress)?.cross_validating()?;
             cross_validation(&fitted.objective, &fits)
         };
         Ok(Self {

@@ -1,6 +1,8 @@
 //! The comparison of models: every candidate fitted to the same readings, and the smallest model
 //! that predicts well enough.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use brdf_core::{AnyBrdf, ModelParameters};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -15,7 +17,7 @@ use crate::fit::{Fit, FitError, FitOptions, fit_scan};
 use crate::model::Model;
 use crate::objective::Objective;
 use crate::objective::weights::{AssumedErrors, Weights};
-use crate::progress::{Cancelled, Observer, Phase, Progress};
+use crate::progress::{Cancelled, Observer, Part, Phase, Progress, Task};
 use crate::scan::Measurements;
 
 /// Largest number of readings of an assessment, approximately: it fits some hundred times.
@@ -97,9 +99,18 @@ pub(super) fn compare(
     options: &FitOptions,
     progress: &Progress<'_>,
 ) -> Result<(Vec<Candidate>, Vec<LeftOut>), Cancelled> {
+    let begun = AtomicUsize::new(0);
+    let fit = |model: Model| {
+        progress.begin_part(Part {
+            task: Task::Model,
+            number: begun.fetch_add(1, Ordering::Relaxed) + 1,
+            count: models.len(),
+        })?;
+        try_candidate(scan, model, options, progress)
+    };
     let fitted: Vec<_> = models
         .par_iter()
-        .map(|&model| (model, try_candidate(scan, model, options, progress)))
+        .map(|&model| (model, fit(model)))
         .collect();
     let (mut candidates, mut left_out) = (Vec::new(), Vec::new());
     for (model, candidate) in fitted {
@@ -126,7 +137,12 @@ pub(crate) fn sufficient_model(
     let scan = assessed_readings(measurements, options);
     let options = least_squares(options);
     let mut candidates = Vec::new();
-    for model in Model::HIERARCHY {
+    for (i, model) in Model::HIERARCHY.into_iter().enumerate() {
+        progress.begin_part(Part {
+            task: Task::Model,
+            number: i + 1,
+            count: Model::HIERARCHY.len(),
+        })?;
         let candidate = try_candidate(&scan, model, &options, &progress);
         match candidate {
             Err(FitError::Cancelled) => return Err(Cancelled),

@@ -12,7 +12,7 @@ use crate::fit::grid_search::GridSearch;
 use crate::format::in_degrees;
 use crate::model::{Parameter, ReducedModel};
 use crate::objective::Objective;
-use crate::progress::{Cancelled, Progress};
+use crate::progress::{Cancelled, Part, Progress, Task};
 use crate::solver::{polish, unless_cancelled};
 
 /// An objective with everything that fits of some of its incidences need.
@@ -63,6 +63,21 @@ impl<'a> Refitter<'a> {
         (0..self.objective.folds())
             .map(|fold| self.without(fold))
             .collect()
+    }
+
+    /// The [fits without each fold](Self::without_each_fold), each of which is reported as a part of the
+    /// cross-validation.
+    pub(super) fn cross_validating(&self) -> Result<Vec<Option<ModelParameters>>, Cancelled> {
+        let count = self.objective.folds();
+        let fit = |fold| {
+            self.progress.begin_part(Part {
+                task: Task::CrossValidation,
+                number: fold + 1,
+                count,
+            })?;
+            self.without(fold)
+        };
+        (0..count).map(fit).collect()
     }
 
     /// The parameters of a fit of all incidences except those of one fold; `None` where the others do

@@ -89,14 +89,19 @@ fn show_progress(ui: &mut Ui, run: &FitRun, intents: &mut Vec<Intent>) {
             intents.push(Intent::Command(Command::Cancel));
         }
         let (ended, count) = (run.ended_count(), run.fit_count());
-        let phase = run.phase.map_or("", phase_name);
         let text = match count {
-            1 => phase.to_owned(),
-            _ => format!("{ended} of {count}: {phase}"),
+            1 => running(run),
+            _ => format!("{ended} of {count}: {}", running(run)),
         };
         let fraction = ended as f32 / count.max(1) as f32;
         ui.add(ProgressBar::new(fraction).text(text));
     });
+}
+
+/// What runs: the part of the phase, or else the phase.
+fn running(run: &FitRun) -> String {
+    let phase = || run.phase.map_or("", phase_name).to_owned();
+    run.part.map_or_else(phase, |part| part.to_string())
 }
 
 /// What a phase of a fit does.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use brdf_fit::{Phase, Step};
+use brdf_fit::{Part, Phase, Step};
 
 use super::convergence::ConvergencePoint;
 use super::id::{SampleId, ScanId};
@@ -35,6 +35,8 @@ pub struct FitRun {
     pub scan: ScanId,
     /// The current phase of its fit.
     pub phase: Option<Phase>,
+    /// The part of the phase that was begun last, where parts are counted.
+    pub part: Option<Part>,
     /// The iterations of its stages so far.
     pub points: Vec<ConvergencePoint>,
     /// The progress of the run.
@@ -66,6 +68,7 @@ impl FitRun {
             errors: Vec::new(),
             scan: *scans.first()?,
             phase: None,
+            part: None,
             points: Vec::new(),
             progress: Progress::Running,
             started: Instant::now(),
@@ -143,7 +146,10 @@ impl FitRun {
             self.scan = scan;
             self.points.clear();
         }
-        self.phase = Some(step.phase);
+        if self.phase.replace(step.phase) != Some(step.phase) {
+            self.part = None;
+        }
+        self.part = step.part.or(self.part);
         if let Some(e_percent) = step.e_percent {
             self.points.push(ConvergencePoint {
                 phase: step.phase,

@@ -3,16 +3,15 @@
 use std::time::{Duration, Instant};
 
 use crate::common::{
-    Window, click, click_role, drop_file, empty, open_built_in, painted_lines, settle, shows,
-    type_number, with_z307, z307,
+    Window, click, click_role, drop_file, empty, open_built_in, painted_lines, painted_texts,
+    settle, shows, type_number, with_z307, z307,
 };
-use brdf_fit::Phase;
 use brdf_fit::plot::Ground;
 use brdf_fit::report::{Depth, Report};
-use brdf_fit::{FitOptions, Measurements, Method, RefractiveIndex};
+use brdf_fit::{FitOptions, Measurements, Method, Part, Phase, RefractiveIndex, Step, Task};
 use brdf_viewer::intent::{Command, Intent};
 use brdf_viewer::output_kind::OutputKind;
-use brdf_viewer::state::fit_run::Progress;
+use brdf_viewer::state::fit_run::{FitRun, Progress};
 use brdf_viewer::state::fit_settings::{ReadingWeights, Scope, Stages, Start};
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
@@ -71,6 +70,39 @@ fn a_fit_of_both_stages_equals_that_of_the_library() {
         assert_eq!(points.last().unwrap().iteration, stage.iterations);
         assert_eq!(points.len() as u64, stage.iterations + 1);
     }
+}
+
+#[test]
+fn the_progress_names_the_part_that_runs() {
+    let mut window = with_z307();
+    let scan = window.state().state.active_sample().unwrap().scan_id();
+    let mut run = FitRun::new(7, false, &[scan]).unwrap();
+    let step = Step {
+        phase: Phase::Assessment,
+        iteration: 0,
+        part: None,
+        e_percent: None,
+        parameters: None,
+    };
+    let part = Part {
+        task: Task::CrossValidation,
+        number: 3,
+        count: 5,
+    };
+    run.record(scan, &step);
+    let begun = Step {
+        part: Some(part),
+        ..step
+    };
+    // The steps of a part do not state it again.
+    for step in [begun, step] {
+        run.record(scan, &step);
+    }
+    window.state_mut().state.fit_run = Some(run);
+    window.step();
+    let texts = painted_texts(&window);
+    let is_named = |name: &str| texts.iter().any(|(text, _)| text == name);
+    assert!(is_named("cross-validation 3 of 5"), "{texts:?}");
 }
 
 #[test]

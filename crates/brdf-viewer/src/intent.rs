@@ -7,6 +7,7 @@ use brdf_fit::plot::{View, Zoom};
 use brdf_fit::{Model, Parameter};
 
 use crate::output_kind::OutputKind;
+use crate::state::angle_range::End;
 use crate::state::fit_settings::{FitSettings, Scope, Stages};
 use crate::state::id::{SampleId, ScanId};
 use crate::state::interface::{ResidualKind, ResultTab};
@@ -43,6 +44,9 @@ pub enum Intent {
     ToggleReadings(ScanId, Vec<usize>),
     /// Use all readings of a scan.
     UseAllReadings(ScanId),
+    /// Leave the readings of a scan beyond an end of its view angles out, and use those within: the new
+    /// end in degrees, with the sign of the view.
+    LimitAngles(ScanId, End, f64),
     /// Take a model that the last fit of the active scan was compared with, and fit it.
     UseModel(Model),
     /// Show or hide a model that the last fit of the active scan was compared with.
@@ -114,6 +118,8 @@ pub enum Command {
     Quit,
     /// Toggle whether the pointer chooses readings in the plot.
     ChooseReadings,
+    /// Toggle whether the plot shows the limits of the fit where they are not changed.
+    Limits,
     /// Keep the current theory in the plot.
     Pin,
     /// Remove all theories that stay in the plot.

@@ -4,11 +4,13 @@
 use brdf_fit::format::two_digits;
 use brdf_fit::plot::mark;
 use brdf_fit::rms_percent;
-use egui::{Grid, RichText, Role, Ui, WidgetInfo, vec2};
+use egui::{DragValue, Grid, Id, RichText, Role, Ui, WidgetInfo, vec2};
 
 use crate::intent::Intent;
 use crate::plot::items::mark_at;
 use crate::state::State;
+use crate::state::angle_range::End;
+use crate::state::id::ScanId;
 use crate::state::sample::{Sample, Usage};
 use crate::theme;
 use crate::widgets::{degrees, named};
@@ -31,6 +33,40 @@ pub(super) fn show(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Ve
         .num_columns(5)
         .spacing([7.0, 3.0])
         .show(ui, |ui| show_rows(ui, state, sample, intents));
+    if let Some(range) = state.active_angle_range() {
+        ui.horizontal(|ui| {
+            ui.label("θ in the fit");
+            for end in End::BOTH {
+                show_end(ui, sample.scan_id(), end, end.of(range.used), intents);
+            }
+        });
+    }
+}
+
+/// The number box of an end of the view angles that the fit uses. It has its effect when the number is
+/// complete, as one step of the history.
+fn show_end(ui: &mut Ui, scan: ScanId, end: End, value_deg: f64, intents: &mut Vec<Intent>) {
+    let key = Id::unique(("view angle", scan, end));
+    let dragged = ui.data(|data| data.get_temp::<f64>(key));
+    let mut shown = dragged.unwrap_or(value_deg);
+    let number = DragValue::new(&mut shown).range(-90.0..=90.0).speed(0.5);
+    let number = number.max_decimals(2).suffix("°");
+    let response = ui.add(number.update_while_editing(false));
+    let name = format!("{} view angle in the fit", end.word());
+    let response = named(response, Role::SpinButton, &name);
+    if response.dragged() {
+        ui.data_mut(|data| data.insert_temp(key, shown));
+    } else {
+        ui.data_mut(|data| data.remove_temp::<f64>(key));
+        // The box rounds what it shows, which alone is no change.
+        if (shown - value_deg).abs() > 0.006 {
+            intents.push(Intent::LimitAngles(scan, end, shown));
+        }
+    }
+    response.on_hover_text(
+        "Readings beyond these view angles are left out of the fit, at all incidences; of several \
+         planes, those of the plane in the plot",
+    );
 }
 
 fn show_rows(ui: &mut Ui, state: &State, sample: &Sample, intents: &mut Vec<Intent>) {

@@ -11,6 +11,7 @@ use super::common::{self, describe, reset_on_demand};
 use super::context::{DrawnCurve, PlotContext};
 use super::hover::{show_residuals, show_values};
 use super::items::{self, Drawing};
+use super::limits;
 use super::navigation::navigate;
 use crate::intent::Intent;
 
@@ -267,8 +268,9 @@ fn show_values_plot(
     show_values(&response, view, curves, position);
     let of_reading = |reading: &Reading| position(reading.theta_deg, reading.value);
     choose(context, &response, curves, of_reading);
-    if view.layout == Layout::Panels {
-        show_panel_title(ui, view, &response, curves);
+    match view.layout {
+        Layout::Panels => show_panel_title(ui, view, &response, curves),
+        Layout::Together | Layout::Polar => limits::show(ui, context, &response),
     }
     describe(&response, "BRDF plot", curves);
 }

@@ -7,6 +7,7 @@ mod common;
 pub mod context;
 mod hover;
 pub mod items;
+mod limits;
 mod navigation;
 mod polar;
 pub mod ticks;

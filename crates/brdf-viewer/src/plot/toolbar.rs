@@ -3,7 +3,7 @@
 use brdf_fit::Side;
 use brdf_fit::format::counted;
 use brdf_fit::plot::{Layout, Scale};
-use egui::{Checkbox, ComboBox, Shape, Stroke, Ui, vec2};
+use egui::{Button, Checkbox, ComboBox, Shape, Stroke, Ui, vec2};
 
 use super::items::dashes;
 use crate::intent::{Command, Intent};
@@ -23,6 +23,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         show_side(ui, state, intents);
         show_planes(ui, state, intents);
         show_choosing(ui, state, intents);
+        show_limits(ui, state, intents);
         if ui.button("Reset zoom").clicked() {
             intents.push(Intent::Command(Command::ResetZoom));
         }
@@ -89,6 +90,19 @@ fn show_choosing(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
     let button = named(button, egui::Role::Button, Command::ChooseReadings.name());
     if button.on_hover_text(hint).clicked() {
         intents.push(Intent::Command(Command::ChooseReadings));
+    }
+}
+
+fn show_limits(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    let enabled = state.is_enabled(Command::Limits);
+    let label = Button::selectable(state.interface.limits, "limits");
+    let button = ui.add_enabled(enabled, label);
+    let hint = "Show the limits of the fit, which can be dragged: the range of view angles, and the \
+                largest ψ of stage 1";
+    let button = named(button, egui::Role::Button, Command::Limits.name());
+    let button = button.on_disabled_hover_text("The form Together shows the limits of the fit");
+    if button.on_hover_text(hint).clicked() {
+        intents.push(Intent::Command(Command::Limits));
     }
 }
 

@@ -44,6 +44,7 @@ impl State {
             Intent::UseIncidence(id, i, used) => self.use_incidence(id, i, used),
             Intent::ToggleReadings(id, readings) => self.toggle_readings(id, &readings),
             Intent::UseAllReadings(id) => self.leave_out(id, BTreeSet::new()),
+            Intent::LimitAngles(id, end, to_deg) => self.limit_angles(id, end, to_deg),
             Intent::ToggleModel(model) => self.toggle_model(model),
             Intent::Unpin(i) => {
                 if i < self.ghosts.len() {

@@ -71,6 +71,7 @@ impl State {
             Command::Parameters => self.interface.parameters ^= true,
             Command::Results => self.interface.results ^= true,
             Command::ChooseReadings => self.choosing ^= true,
+            Command::Limits => self.interface.limits ^= true,
             Command::Dark => self.interface.dark = Some(!self.is_dark()),
             Command::SystemTheme => self.interface.dark = None,
             _ => {}
@@ -105,6 +106,7 @@ impl State {
             }
             Command::Cancel => self.is_fitting(),
             Command::Residuals => self.view.layout != Layout::Polar,
+            Command::Limits => self.view.layout == Layout::Together,
             _ => true,
         }
     }
@@ -119,6 +121,7 @@ impl State {
             Command::Panels => self.view.layout == Layout::Panels,
             Command::Polar => self.view.layout == Layout::Polar,
             Command::ChooseReadings => self.choosing,
+            Command::Limits => self.interface.limits,
             Command::Samples => self.interface.samples,
             Command::Parameters => self.interface.parameters,
             Command::Results => self.interface.results,

@@ -1,4 +1,4 @@
-//! The values derived from data, view and parameters: curves, E and reflectances.
+//! The values derived from data, view and parameters: curves, E, reflectances and ranges of angles.
 //!
 //! Each is cached with the values that it depends on, and computed again only if these have
 //! changed. The selection of readings does not depend on the parameters, and nothing here depends
@@ -16,6 +16,7 @@ use brdf_fit::plot::{Curve, Layout, Quantity, Scale, Selection, View, curves};
 use brdf_fit::{FitError, FitOptions, RefractiveIndex};
 use brdf_fit::{IncidenceError, Objective};
 
+use super::angle_range::AngleRange;
 use super::fit_settings::{FitSettings, ReadingWeights};
 use super::ghost::Ghost;
 use super::id::{SampleId, ScanId};
@@ -105,6 +106,9 @@ type ObjectiveKey = (Family, ReadingWeights, BTreeSet<usize>);
 /// The view, the visible incidence angles and the parameters of a ghost.
 type GhostKey = (View, Vec<f64>, EditedParameters);
 
+/// The view, and the readings that are left out.
+type AnglesKey = (View, BTreeSet<usize>);
+
 /// The values derived from one scan.
 #[derive(Debug, Clone, Default)]
 struct DerivedScan {
@@ -113,6 +117,7 @@ struct DerivedScan {
     objective: Cached<ObjectiveKey, Result<Objective, NoRelativeErrors>>,
     errors: Cached<(EditedParameters, ObjectiveKey), Result<RelativeErrors, NoRelativeErrors>>,
     reflectance: Cached<(Family, ModelParameters), Reflectances>,
+    angles: Cached<AnglesKey, Option<AngleRange>>,
 }
 
 /// The values derived from all scans.
@@ -164,6 +169,11 @@ impl Derived {
         Some(errors.as_ref().map_err(Clone::clone))
     }
 
+    /// The view angles of a scan; `None` where no reading in the plane is used.
+    pub fn angle_range(&self, scan: ScanId) -> Option<&AngleRange> {
+        self.scans.get(&scan)?.angles.last()?.as_ref()
+    }
+
     /// The reflectances of the theory of a scan.
     pub fn reflectance(&self, scan: ScanId) -> &[[f64; 2]] {
         let rho = self.scans.get(&scan).and_then(|s| s.reflectance.last());
@@ -194,6 +204,7 @@ impl Derived {
             let weights = settings.objective_weights();
             derived.refresh_errors(sample.scan(), settings.weights, &weights);
             derived.refresh_reflectance(&sample.scan().parameters);
+            derived.refresh_angles(sample.scan(), view);
         }
     }
 }
@@ -208,14 +219,18 @@ fn without_axes(view: &View) -> View {
     }
 }
 
+/// A view as far as the choice of readings depends on it.
+fn plane_of(view: &View) -> View {
+    View {
+        quantity: Quantity::default(),
+        ..without_axes(view)
+    }
+}
+
 impl DerivedScan {
     fn refresh_curves(&mut self, scan: &Scan, view: &View, columns: usize) {
         let view = without_axes(view);
-        let plane = View {
-            quantity: Quantity::default(),
-            ..view
-        };
-        let key = (plane, scan.visible_psi(), columns);
+        let key = (plane_of(&view), scan.visible_psi(), columns);
         let selection = self.selection.get(key.clone(), |(view, psi, columns)| {
             Selection::of(&scan.measurements, view, Some(psi), *columns)
         });
@@ -259,6 +274,13 @@ impl DerivedScan {
                 e_percent: 100.0 * error,
                 incidences,
             })
+        });
+    }
+
+    fn refresh_angles(&mut self, scan: &Scan, view: &View) {
+        let key = (plane_of(view), scan.left_out().clone());
+        self.angles.get(key, |(view, left_out)| {
+            AngleRange::new(&scan.measurements, left_out, view)
         });
     }
 

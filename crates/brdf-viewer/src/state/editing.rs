@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use brdf_fit::{Model, Parameter};
 
 use super::State;
+use super::angle_range::End;
 use super::fit_settings::{Scope, Stages};
 use super::history::{Change, Edited};
 use super::id::{SampleId, ScanId};
@@ -12,14 +13,26 @@ use super::parameters::EditedParameters;
 use super::sample::Sample;
 
 impl State {
-    /// Ends a change of the parameters, which becomes one step of the history.
+    /// Ends a change of the parameters, or of the limit of stage 1, which becomes one step of the
+    /// history.
     pub fn commit(&mut self) {
         let Some(sample) = self.active_sample_mut() else {
             return;
         };
         let id = sample.scan_id();
         let change = sample.scan_mut().commit(id);
-        self.history.push(change.into_iter().collect());
+        let limit = self.commit_stage1_limit(id);
+        self.history.push(change.into_iter().chain(limit).collect());
+    }
+
+    fn commit_stage1_limit(&mut self, scan: ScanId) -> Option<Change> {
+        let after = self.fit_settings.stage1_limit_deg;
+        let before = self.committed_stage1_limit_deg.replace(after)?;
+        (before != after).then_some(Change {
+            scan,
+            before: Edited::Stage1Limit(before),
+            after: Edited::Stage1Limit(after),
+        })
     }
 
     pub(super) fn activate(&mut self, id: SampleId) {
@@ -104,19 +117,29 @@ impl State {
     /// that the user sees the effect.
     fn restore(&mut self, changes: &[Change], edited: impl Fn(&Change) -> &Edited) {
         for change in changes {
-            if let Some(scan) = self.scan_mut(change.scan) {
-                match edited(change) {
-                    Edited::Parameters(parameters) => {
+            match edited(change) {
+                Edited::Stage1Limit(limit_deg) => {
+                    self.fit_settings.stage1_limit_deg = *limit_deg;
+                    self.committed_stage1_limit_deg = Some(*limit_deg);
+                }
+                Edited::Parameters(parameters) => {
+                    if let Some(scan) = self.scan_mut(change.scan) {
                         scan.parameters = *parameters;
                         scan.committed = *parameters;
                     }
-                    Edited::LeftOut(readings) => scan.leave_out(readings.clone()),
+                }
+                Edited::LeftOut(readings) => {
+                    if let Some(scan) = self.scan_mut(change.scan) {
+                        scan.leave_out(readings.clone());
+                    }
                 }
             }
         }
         let active = self.active_sample().filter(|sample| sample.visible);
         let active = active.map(Sample::scan_id);
-        let is_seen = changes.iter().any(|change| Some(change.scan) == active);
+        let of_all_scans = |change: &Change| matches!(change.before, Edited::Stage1Limit(_));
+        let is_seen = |change: &Change| Some(change.scan) == active || of_all_scans(change);
+        let is_seen = changes.iter().any(is_seen);
         if let Some(first) = changes.first().filter(|_| !is_seen) {
             self.show(first.scan);
         }
@@ -160,6 +183,16 @@ impl State {
             }
         }
         self.leave_out(scan_id, left_out);
+    }
+
+    /// Moves an end of the view angles of a scan that its fit uses.
+    pub(super) fn limit_angles(&mut self, id: ScanId, end: End, to_deg: f64) {
+        let range = self.derived.angle_range(id).copied();
+        if let (Some(range), Some(scan)) = (range, self.scan(id)) {
+            let (all, left_out) = (&scan.measurements, scan.left_out());
+            let moved = range.moved(end, to_deg, all, left_out, &self.view);
+            self.leave_out(id, moved);
+        }
     }
 
     /// Leaves readings out that are used, or uses them again if all of them are left out.

@@ -1,4 +1,4 @@
-//! Undo and redo of changes of the parameters, and of the choice of readings.
+//! Undo and redo of changes of the parameters, of the choice of readings and of the limit of stage 1.
 
 use std::collections::BTreeSet;
 
@@ -26,6 +26,8 @@ pub enum Edited {
     Parameters(EditedParameters),
     /// The indices of the readings that are left out.
     LeftOut(BTreeSet<usize>),
+    /// The largest incidence angle of stage 1 in degrees, a setting of all fits.
+    Stage1Limit(f64),
 }
 
 /// The changes that can be undone and redone. A step may change several scans.

@@ -116,6 +116,8 @@ pub struct Interface {
     pub residuals: ResidualKind,
     /// The parameter that is plotted against the wavelength.
     pub parameter: Parameter,
+    /// Whether the plot shows the limits of the fit where they are not changed.
+    pub limits: bool,
 }
 
 impl Default for Interface {
@@ -128,6 +130,7 @@ impl Default for Interface {
             tab: ResultTab::Summary,
             residuals: ResidualKind::Absolute,
             parameter: Parameter::K1,
+            limits: false,
         }
     }
 }

@@ -5,6 +5,7 @@
 //! `opening`, `exporting` and `parameter_table`, `commands`, and `apply`, which dispatches intents
 //! and events to them.
 
+pub mod angle_range;
 mod apply;
 pub mod built_in;
 mod commands;
@@ -34,6 +35,7 @@ use egui::ColorImage;
 
 use crate::job::{FileJob, Job};
 use crate::output_kind::OutputKind;
+use angle_range::AngleRange;
 use derived::Derived;
 use fit_run::FitRun;
 use fit_settings::{FitSettings, Scope};
@@ -94,6 +96,9 @@ pub struct State {
     pub convention: Convention,
     /// The settings of the next fit.
     pub fit_settings: FitSettings,
+    /// The limit of stage 1 after the last finished change, to which undo returns; `None` before the
+    /// first frame.
+    committed_stage1_limit_deg: Option<f64>,
     /// The current or the last run of fits.
     pub fit_run: Option<FitRun>,
     /// Whether a click or a rectangle in the plot chooses readings, instead of moving the plot.
@@ -175,6 +180,16 @@ impl State {
     /// The active sample.
     pub fn active_sample(&self) -> Option<&Sample> {
         self.sample(self.active?)
+    }
+
+    /// The view angles of the readings of the active scan; `None` where none is used, and for a table,
+    /// of which all bins are fitted.
+    pub fn active_angle_range(&self) -> Option<&AngleRange> {
+        let sample = self.active_sample()?;
+        let is_table = sample.scan().table.is_some();
+        self.derived
+            .angle_range(sample.scan_id())
+            .filter(|_| !is_table)
     }
 
     /// An open sample.

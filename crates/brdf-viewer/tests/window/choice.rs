@@ -1,6 +1,6 @@
 //! The choice of readings: left out by a click, a rectangle or an incidence.
 
-use crate::common::{Window, click, menu, settle, transform_of, with_z307, z307};
+use crate::common::{Window, click, menu, press, release, transform_of, with_z307, z307};
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
 use brdf_viewer::state::sample::Scan;
@@ -52,20 +52,6 @@ fn position(window: &Window, incidence: usize, reading: usize) -> (egui::Pos2, u
     let transform = transform_of(window, "theory");
     let at = egui_plot::PlotPoint::new(reading.theta_deg, reading.value);
     (transform.position_from_point(&at), reading.index)
-}
-
-fn press(window: &mut Window, at: egui::Pos2) {
-    window.hover_at(at);
-    window.step();
-    window.drag_at(at);
-    window.step();
-}
-
-fn release(window: &mut Window, at: egui::Pos2) {
-    window.hover_at(at);
-    window.step();
-    window.drop_at(at);
-    settle(window);
 }
 
 #[test]

@@ -124,6 +124,22 @@ pub(crate) fn click_role(window: &mut Window, role: Role, label: &str) {
     settle(window);
 }
 
+/// Presses the button of the mouse at a place.
+pub(crate) fn press(window: &mut Window, at: Pos2) {
+    window.hover_at(at);
+    window.step();
+    window.drag_at(at);
+    window.step();
+}
+
+/// Moves the mouse to a place, and releases its button there.
+pub(crate) fn release(window: &mut Window, at: Pos2) {
+    window.hover_at(at);
+    window.step();
+    window.drop_at(at);
+    settle(window);
+}
+
 /// Whether a text is shown anywhere.
 pub(crate) fn shows(window: &Window, text: &str) -> bool {
     window.query_all_by_label_contains(text).next().is_some()

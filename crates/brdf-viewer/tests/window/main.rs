@@ -7,6 +7,7 @@ mod common;
 mod display;
 mod files;
 mod fitting;
+mod limits;
 mod parameters;
 mod result;
 mod session;

@@ -6,6 +6,7 @@
 use crate::common::{NoDialogs, Window, drop_file, settle, window_with};
 use brdf_fit::Model;
 use brdf_viewer::intent::{Command, Intent};
+use brdf_viewer::state::angle_range::End;
 use brdf_viewer::state::id::SampleId;
 use brdf_viewer::state::interface::ResultTab;
 use brdf_viewer::state::saved::Settings;
@@ -13,7 +14,7 @@ use brdf_viewer::state::saved::Settings;
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 
 /// The states of the window of which there are snapshots.
-const STATES: [&str; 9] = [
+const STATES: [&str; 10] = [
     "empty",
     "loaded",
     "fitted",
@@ -21,6 +22,7 @@ const STATES: [&str; 9] = [
     "panels",
     "polar",
     "compared",
+    "limits",
     "wavelengths",
     "error",
 ];
@@ -51,6 +53,14 @@ fn bring_to(window: &mut Window, state: &str) {
             apply(Intent::Tab(ResultTab::Models));
             apply(Intent::ToggleModel(Model::SmithN));
             apply(Intent::UseIncidence(SampleId(0), 1, false));
+        }
+        "limits" => {
+            apply(Intent::Command(Command::Limits));
+            let state = &window.state().state;
+            let scan = state.active_sample().unwrap().scan_id();
+            let limited = Intent::LimitAngles(scan, End::High, 52.0);
+            window.state_mut().state.apply(limited);
+            settle(window);
         }
         "wavelengths" => {
             apply(Intent::Command(Command::FitAll));
@@ -108,8 +118,9 @@ fn mask_times(window: &mut Window) {
 #[test]
 fn fine_screen() {
     let mut window = window_with([1280.0, 720.0], NoDialogs, Settings::in_memory());
-    window.ctx.set_pixels_per_point(2.0);
-    window.set_size(egui::vec2(2560.0, 1440.0));
+    let viewports = &mut window.input_mut().viewports;
+    let own = viewports.entry(egui::ViewportId::ROOT).or_default();
+    own.native_pixels_per_point = Some(2.0);
     bring_to(&mut window, "compared");
     mask_times(&mut window);
     window.remove_cursor();

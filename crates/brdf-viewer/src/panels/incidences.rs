@@ -50,7 +50,7 @@ fn show_end(ui: &mut Ui, scan: ScanId, end: End, value_deg: f64, intents: &mut V
     let dragged = ui.data(|data| data.get_temp::<f64>(key));
     let mut shown = dragged.unwrap_or(value_deg);
     let number = DragValue::new(&mut shown).range(-90.0..=90.0).speed(0.5);
-    let number = number.max_decimals(2).suffix("°");
+    let number = number.min_decimals(1).max_decimals(2).suffix("°");
     let response = ui.add(number.update_while_editing(false));
     let name = format!("{} view angle in the fit", end.word());
     let response = named(response, Role::SpinButton, &name);

@@ -101,6 +101,10 @@ impl ResidualKind {
 /// The theme and the visible panels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "each is shown or hidden by itself"
+)]
 pub struct Interface {
     /// Whether the theme is dark; `None` follows the system.
     pub dark: Option<bool>,

@@ -64,6 +64,7 @@ impl Dielectric {
     }
 
     /// R0(gamma) = R(gamma)/R(0) for cos gamma in (0, 1], dimensionless.
+    #[inline]
     pub fn relative(&self, cos_gamma: f64) -> f64 {
         self.ratio(cos_gamma, cos_gamma * cos_gamma).value()
     }
@@ -88,6 +89,7 @@ impl Dielectric {
     ///
     /// R0 is 1 at gamma = 0 for any n, so that the derivative has the factor sin^2 gamma, which
     /// cos gamma alone does not determine accurately.
+    #[inline]
     pub fn relative_derivative_n(&self, cos_gamma: f64, sin2_gamma: f64) -> f64 {
         let (n, c) = (self.n, cos_gamma);
         let Terms {

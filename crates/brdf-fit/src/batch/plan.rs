@@ -6,7 +6,7 @@ use super::own::OwnTable;
 use super::table::Table;
 use crate::model::{Model, Parameter, ReducedModel};
 use crate::objective::weights::{AssumedErrors, Weights};
-use crate::objective::{LobeRows, Objective, ObjectiveError};
+use crate::objective::{Objective, ObjectiveError};
 use crate::scan::{Measurement, MeasurementError, Measurements};
 
 /// What the fits of a plan have in common.
@@ -125,8 +125,6 @@ pub struct BatchPlan {
     pub(super) readings: usize,
     /// The objective of readings of 1/sr.
     pub(super) objective: Objective,
-    /// The rows of the lobe where n is not free.
-    pub(super) fixed_index: Option<LobeRows>,
     /// The number of readings with a weight.
     pub(super) used: usize,
     /// Whether the rows are in the order of the readings.
@@ -187,7 +185,6 @@ impl BatchPlan {
         Ok(Self {
             in_order,
             used: objective.count() - objective.zero_weight(),
-            fixed_index: (!model.frees(Parameter::N)).then(|| objective.lobe_rows()),
             model,
             readings: angles.len(),
             objective,
@@ -220,6 +217,11 @@ impl BatchPlan {
     /// The number of parameters that are fitted.
     pub(super) fn free(&self) -> usize {
         self.model.free().len()
+    }
+
+    /// Whether n and p are not free, so that at most k1 is searched.
+    pub(super) fn is_along_k1(&self) -> bool {
+        !self.model.frees(Parameter::N) && !self.model.frees(Parameter::P)
     }
 
     /// Whether k1 is searched: not for the Lambertian model.

@@ -114,7 +114,7 @@ impl<'a, T: Copy + Into<f64> + Sync> BatchRun<'a, T> {
         self.check()?;
         let total = self.scans.len();
         let mut fit = BatchFit::with_capacity(total, self.errors);
-        let chunk = if self.plan.fixed_index.is_some() {
+        let chunk = if self.plan.is_along_k1() {
             CHUNK
         } else {
             CHUNK_OF_DESCENTS

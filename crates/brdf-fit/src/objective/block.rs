@@ -1,14 +1,25 @@
 //! The columns of the model, evaluated for a block of rows at a time.
 
+#![expect(
+    clippy::inline_always,
+    reason = "a function that is not inlined is not compiled for the present processor"
+)]
+
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use brdf_core::facet::{Beckmann, Ellipsoid, FacetDistribution, Ggx, Power};
 use brdf_core::fresnel::Dielectric;
 use brdf_core::shadowing::{Shadowing, Smith, VGroove};
 use brdf_core::{Family, ModelParameters};
+use pulp::{Simd, WithSimd};
 
-use super::rows::{Angles, Objective};
+use super::angles::AngleRows;
+use super::rows::Objective;
 use crate::model::Parameter;
+
+/// The vectors of the processor, which are determined once.
+pub(crate) static PROCESSOR: LazyLock<pulp::Arch> = LazyLock::new(pulp::Arch::new);
 
 /// The number of rows that are evaluated together: their columns stay in the nearest cache.
 pub(crate) const BLOCK: usize = 32;
@@ -45,69 +56,88 @@ impl Block {
     }
 }
 
+/// Runs a kernel with the facet distribution and the shadowing of a family, in the widest vectors of the
+/// processor. The loops have the same operations in the same order on all processors, so that the digits
+/// do not depend on it.
+macro_rules! with_terms {
+    ($family:expr, $k1:expr, $p:expr, |$facet:ident, $shadowing:ident| $body:expr) => {
+        match $family {
+            Family::Paper => {
+                let ($facet, $shadowing) = (Ellipsoid::new($k1), VGroove);
+                PROCESSOR.dispatch($body)
+            }
+            Family::Smith => {
+                let ($facet, $shadowing) = (Ellipsoid::new($k1), Smith::new($k1));
+                PROCESSOR.dispatch($body)
+            }
+            Family::Power => {
+                let ($facet, $shadowing) = (Power::new($k1, $p), VGroove);
+                PROCESSOR.dispatch($body)
+            }
+            Family::Ggx => {
+                let ($facet, $shadowing) = (Ggx::new($k1), Smith::new($k1));
+                PROCESSOR.dispatch($body)
+            }
+            Family::Beckmann => {
+                let ($facet, $shadowing) = (Beckmann::new($k1), VGroove);
+                PROCESSOR.dispatch($body)
+            }
+        }
+    };
+}
+
 impl Objective {
     /// u of some rows without their Fresnel factor, for the width k1 and the exponent p.
     pub(crate) fn shape_column(&self, k1: f64, p: f64, rows: Range<usize>, shape: &mut Vec<f64>) {
-        fn fill<'a, F: FacetDistribution, S: Shadowing>(
-            rows: impl Iterator<Item = (&'a Angles, &'a f64)>,
-            facet: F,
-            shadowing: S,
-            shape: &mut Vec<f64>,
-        ) {
-            shape.clear();
-            shape.extend(rows.map(|row| shape_of(facet, shadowing, row)));
-        }
-        let shadowed = &self.shadowed[rows.clone()];
-        let rows = self.angles()[rows].iter().zip(shadowed);
-        match self.family {
-            Family::Paper => fill(rows, Ellipsoid::new(k1), VGroove, shape),
-            Family::Smith => fill(rows, Ellipsoid::new(k1), Smith::new(k1), shape),
-            Family::Power => fill(rows, Power::new(k1, p), VGroove, shape),
-            Family::Ggx => fill(rows, Ggx::new(k1), Smith::new(k1), shape),
-            Family::Beckmann => fill(rows, Beckmann::new(k1), VGroove, shape),
-        }
+        shape.clear();
+        shape.resize(rows.len(), 0.0);
+        let shaped = self.shaped(rows);
+        with_terms!(self.family, k1, p, |facet, shadowing| Shape {
+            facet,
+            shadowing,
+            rows: shaped,
+            to: shape,
+        });
     }
 
     /// The column u at the given k1, n and p.
     pub(crate) fn lobe_column(&self, at: &ModelParameters) -> Vec<f64> {
-        let mut column = Vec::with_capacity(self.len());
-        self.for_blocks(at, [false; 3], 0..self.len(), |rows, block| {
-            column.extend_from_slice(&block.u[..rows.len()]);
-        });
+        let mut column = Vec::new();
+        self.fill_lobe(at, &mut column);
         column
     }
 
+    /// [`lobe_column`](Self::lobe_column) in a given vector.
+    pub(crate) fn fill_lobe(&self, at: &ModelParameters, column: &mut Vec<f64>) {
+        self.shape_column(at.k1, at.p, 0..self.len(), column);
+        let fresnel = self.fresnel_column(at.n);
+        column
+            .iter_mut()
+            .zip(fresnel.iter())
+            .for_each(|(u, fresnel)| *u *= fresnel);
+    }
+
     /// Evaluates u and the requested derivatives with respect to k1, n and p, block by block, and
-    /// passes each block to `take`. The terms of the family are chosen here, outside the loop.
+    /// passes each block to `take`.
     pub(crate) fn for_blocks(
         &self,
         at: &ModelParameters,
         derivatives: [bool; 3],
         rows: Range<usize>,
-        take: impl FnMut(Range<usize>, &Block),
+        mut take: impl FnMut(Range<usize>, &Block),
     ) {
-        let (k1, p) = (at.k1, at.p);
-        match self.family {
-            Family::Paper => {
-                self.for_blocks_of(Ellipsoid::new(k1), VGroove, at.n, derivatives, rows, take);
-            }
-            Family::Smith => {
-                let (facet, shadowing) = (Ellipsoid::new(k1), Smith::new(k1));
-                self.for_blocks_of(facet, shadowing, at.n, derivatives, rows, take);
-            }
-            Family::Power => {
-                self.for_blocks_of(Power::new(k1, p), VGroove, at.n, derivatives, rows, take);
-            }
-            Family::Ggx => {
-                let (facet, shadowing) = (Ggx::new(k1), Smith::new(k1));
-                self.for_blocks_of(facet, shadowing, at.n, derivatives, rows, take);
-            }
-            Family::Beckmann => {
-                self.for_blocks_of(Beckmann::new(k1), VGroove, at.n, derivatives, rows, take);
-            }
-        }
+        with_terms!(self.family, at.k1, at.p, |facet, shadowing| Blocks {
+            objective: self,
+            facet,
+            shadowing,
+            n: at.n,
+            derivatives,
+            rows,
+            take: &mut take,
+        });
     }
 
+    #[inline(always)]
     fn for_blocks_of<F: FacetDistribution, S: Shadowing>(
         &self,
         facet: F,
@@ -115,42 +145,34 @@ impl Objective {
         n: f64,
         [by_k1, by_n, by_p]: [bool; 3],
         rows: Range<usize>,
-        mut take: impl FnMut(Range<usize>, &Block),
+        take: &mut impl FnMut(Range<usize>, &Block),
     ) {
         let dielectric = Dielectric::new(n);
-        let angles = self.angles();
         let mut start = rows.start;
         let mut block = Block::EMPTY;
-        let mut fresnel = [0.0; BLOCK];
+        let (mut shape, mut fresnel) = ([0.0; BLOCK], [0.0; BLOCK]);
         while start < rows.end {
             let range = start..(start + BLOCK).min(rows.end);
+            let shaped = self.shaped(range.clone());
             block.load(&self.measured[range.clone()], &self.diffuse[range.clone()]);
             self.fill_fresnel(&dielectric, range.clone(), &mut fresnel);
-            let rows = || {
-                let angles = angles[range.clone()].iter();
-                fresnel
-                    .iter()
-                    .zip(angles.zip(&self.shadowed[range.clone()]))
-            };
-            for (u, (fresnel, row)) in block.u.iter_mut().zip(rows()) {
-                *u = shape_of(facet, shadowing, row) * fresnel;
-            }
+            fill_shape(facet, shadowing, shaped, &mut shape);
+            multiply(&shape[..range.len()], &fresnel, &mut block.u);
             let [u_by_k1, u_by_n, u_by_p] = &mut block.by;
             if by_k1 {
-                for (slope, (fresnel, row)) in u_by_k1.iter_mut().zip(rows()) {
-                    *slope = shape_by_k1(facet, shadowing, row) * fresnel;
-                }
+                fill_by_k1(facet, shadowing, shaped, &fresnel, u_by_k1);
             }
             if by_n {
-                for (slope, (_, row)) in u_by_n.iter_mut().zip(rows()) {
-                    let by_n = dielectric.relative_derivative_n(row.0.cos_gamma, row.0.sin2_gamma);
-                    *slope = shape_of(facet, shadowing, row) * by_n;
+                let rows = shaped.angles.cos_gamma.iter().zip(shaped.angles.sin2_gamma);
+                for ((slope, shape), (cos, sin2)) in u_by_n.iter_mut().zip(&shape).zip(rows) {
+                    *slope = shape * dielectric.relative_derivative_n(*cos, *sin2);
                 }
             }
             if by_p {
-                for (slope, (fresnel, (angles, shadowed))) in u_by_p.iter_mut().zip(rows()) {
-                    let by_p = facet.derivative_p(angles.tan2_alpha, angles.sec_alpha);
-                    *slope = shadowed * by_p * fresnel;
+                for ((slope, fresnel), (t, sec, shadowed)) in
+                    u_by_p.iter_mut().zip(&fresnel).zip(shaped.tilts())
+                {
+                    *slope = shadowed * facet.derivative_p(*t, *sec) * fresnel;
                 }
             }
             start = range.end;
@@ -159,52 +181,152 @@ impl Objective {
     }
 
     /// R0(gamma) of some rows; the precomputed column is used if n is its refractive index.
+    #[inline(always)]
     fn fill_fresnel(&self, dielectric: &Dielectric, rows: Range<usize>, to: &mut [f64; BLOCK]) {
         if dielectric.n() == self.n {
             to[..rows.len()].copy_from_slice(&self.directions.fresnel[rows]);
         } else {
-            for (value, angles) in to.iter_mut().zip(&self.angles()[rows]) {
-                *value = dielectric.relative(angles.cos_gamma);
+            for (value, cos_gamma) in to.iter_mut().zip(self.angles(rows).cos_gamma) {
+                *value = dielectric.relative(*cos_gamma);
             }
+        }
+    }
+
+    fn shaped(&self, rows: Range<usize>) -> Shaped<'_> {
+        Shaped {
+            shadowed: &self.shadowed[rows.clone()],
+            angles: self.angles(rows),
         }
     }
 }
 
-/// u of a row, given by its angles and its shadowing, without its Fresnel factor.
-///
-/// The rows are those of iterators: indices would be checked, and the loops would not be vector code.
-#[inline]
-fn shape_of<F: FacetDistribution, S: Shadowing>(
-    facet: F,
-    shadowing: S,
-    (angles, shadowed): (&Angles, &f64),
-) -> f64 {
-    let shape = shadowed * facet.relative(angles.tan2_alpha, angles.sec_alpha);
-    if S::DEPENDS_ON_WIDTH {
-        let (psi, theta) = (angles.cos_psi, angles.cos_theta);
-        shape * shadowing.over_cosines(psi, theta, angles.tan2_alpha)
-    } else {
-        shape
+/// What u depends on beside the Fresnel factor, for some rows.
+#[derive(Clone, Copy)]
+struct Shaped<'a> {
+    angles: AngleRows<'a>,
+    /// a, multiplied by G/(cos psi cos theta) where the shadowing does not depend on k1.
+    shadowed: &'a [f64],
+}
+
+impl<'a> Shaped<'a> {
+    /// tan^2 alpha, sec alpha and the shadowed diffuse column.
+    #[inline]
+    fn tilts(self) -> impl Iterator<Item = (&'a f64, &'a f64, &'a f64)> {
+        let tilts = self.angles.tan2_alpha.iter().zip(self.angles.sec_alpha);
+        let rows = tilts.zip(self.shadowed);
+        rows.map(|((t, sec), shadowed)| (t, sec, shadowed))
+    }
+
+    /// cos psi, cos theta and tan^2 alpha.
+    #[inline]
+    fn cosines(self) -> impl Iterator<Item = (&'a f64, &'a f64, &'a f64)> {
+        let cosines = self.angles.cos_psi.iter().zip(self.angles.cos_theta);
+        let rows = cosines.zip(self.angles.tan2_alpha);
+        rows.map(|((psi, theta), t)| (psi, theta, t))
     }
 }
 
-/// The derivative of [`shape_of`] with respect to k1.
-#[inline]
-fn shape_by_k1<F: FacetDistribution, S: Shadowing>(
+/// [`Objective::shape_column`].
+struct Shape<'a, F, S> {
     facet: F,
     shadowing: S,
-    (angles, shadowed): (&Angles, &f64),
-) -> f64 {
-    let (t, sec) = (angles.tan2_alpha, angles.sec_alpha);
-    let slope = facet.derivative_k1(t, sec);
+    rows: Shaped<'a>,
+    to: &'a mut [f64],
+}
+
+impl<F: FacetDistribution, S: Shadowing> WithSimd for Shape<'_, F, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        fill_shape(self.facet, self.shadowing, self.rows, self.to);
+    }
+}
+
+/// [`Objective::for_blocks`].
+struct Blocks<'a, F, S, T> {
+    objective: &'a Objective,
+    facet: F,
+    shadowing: S,
+    n: f64,
+    derivatives: [bool; 3],
+    rows: Range<usize>,
+    take: &'a mut T,
+}
+
+impl<F, S, T> WithSimd for Blocks<'_, F, S, T>
+where
+    F: FacetDistribution,
+    S: Shadowing,
+    T: FnMut(Range<usize>, &Block),
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        let (facet, shadowing) = (self.facet, self.shadowing);
+        self.objective.for_blocks_of(
+            facet,
+            shadowing,
+            self.n,
+            self.derivatives,
+            self.rows,
+            self.take,
+        );
+    }
+}
+
+/// u of some rows without their Fresnel factor.
+///
+/// The rows are those of iterators: indices would be checked, and the loops would not be vector code.
+#[inline(always)]
+fn fill_shape<F: FacetDistribution, S: Shadowing>(
+    facet: F,
+    shadowing: S,
+    rows: Shaped<'_>,
+    to: &mut [f64],
+) {
+    for (shape, (t, sec, shadowed)) in to.iter_mut().zip(rows.tilts()) {
+        *shape = shadowed * facet.relative(*t, *sec);
+    }
     if S::DEPENDS_ON_WIDTH {
-        let (psi, theta) = (angles.cos_psi, angles.cos_theta);
-        let by_facet = slope * shadowing.over_cosines(psi, theta, t);
-        let by_shadowing =
-            facet.relative(t, sec) * shadowing.over_cosines_derivative_k1(psi, theta, t);
-        shadowed * (by_facet + by_shadowing)
+        for (shape, (psi, theta, t)) in to.iter_mut().zip(rows.cosines()) {
+            *shape *= shadowing.over_cosines(*psi, *theta, *t);
+        }
+    }
+}
+
+/// The derivative of u with respect to k1.
+#[inline(always)]
+fn fill_by_k1<F: FacetDistribution, S: Shadowing>(
+    facet: F,
+    shadowing: S,
+    rows: Shaped<'_>,
+    fresnel: &[f64; BLOCK],
+    to: &mut [f64; BLOCK],
+) {
+    if S::DEPENDS_ON_WIDTH {
+        let rows = rows.tilts().zip(rows.cosines());
+        for (slope, ((t, sec, shadowed), (psi, theta, _))) in to.iter_mut().zip(rows) {
+            let by_facet = facet.derivative_k1(*t, *sec) * shadowing.over_cosines(*psi, *theta, *t);
+            let by_shadowing =
+                facet.relative(*t, *sec) * shadowing.over_cosines_derivative_k1(*psi, *theta, *t);
+            *slope = shadowed * (by_facet + by_shadowing);
+        }
     } else {
-        shadowed * slope
+        for (slope, (t, sec, shadowed)) in to.iter_mut().zip(rows.tilts()) {
+            *slope = shadowed * facet.derivative_k1(*t, *sec);
+        }
+    }
+    to.iter_mut()
+        .zip(fresnel)
+        .for_each(|(slope, fresnel)| *slope *= fresnel);
+}
+
+#[inline(always)]
+fn multiply(x: &[f64], y: &[f64; BLOCK], to: &mut [f64; BLOCK]) {
+    for ((to, x), y) in to.iter_mut().zip(x).zip(y) {
+        *to = x * y;
     }
 }
 
@@ -242,7 +364,7 @@ pub(super) fn derivatives_for(free: &[Parameter]) -> [bool; 3] {
 }
 
 /// A scalar product in four independent running sums: fast, and the same on every processor.
-#[inline]
+#[inline(always)]
 pub(crate) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
     let mut sums = [0.0; 4];
     for (x, y) in x.as_chunks::<4>().0.iter().zip(y.as_chunks::<4>().0) {
@@ -254,6 +376,7 @@ pub(crate) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
 }
 
 /// The scalar product of columns of any length, in eight independent running sums.
+#[inline(always)]
 pub(crate) fn dot_of(x: &[f64], y: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut sums = [0.0; LANES];

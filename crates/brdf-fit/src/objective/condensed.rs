@@ -19,8 +19,9 @@ use brdf_core::shadowing::{Shadowing as _, VGroove};
 use brdf_core::{Family, Geometry, GeometryError};
 use rayon::prelude::*;
 
+use super::angles::Angles;
 use super::error::ObjectiveError;
-use super::rows::{Angles, Directions, Objective, Segment};
+use super::rows::{Directions, Objective, Segment};
 use super::weights::Weights;
 use crate::scan::{Incidence, Measurement, Measurements};
 
@@ -116,8 +117,10 @@ impl Objective {
         let mut objective = Self::with_capacity(family, n, 0);
         objective.noise = None;
         let mut directions = Directions::default();
-        for (incidence, mut rows) in incidences.iter().zip(rows) {
-            directions.angles.append(&mut rows.angles);
+        for (incidence, rows) in incidences.iter().zip(rows) {
+            rows.angles
+                .iter()
+                .for_each(|row| directions.angles.push(*row));
             objective.append(incidence.psi, rows);
         }
         objective.directions = Arc::new(directions.with_fresnel(n));

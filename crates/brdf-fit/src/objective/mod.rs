@@ -1,24 +1,23 @@
 //! The objective: E of eq. (5) as a function of the parameters, with its derivatives.
 //!
-//! `rows` holds what depends on the readings alone, `block` evaluates the columns of the model,
+//! `rows` holds what depends on the readings alone, `angles` what depends on their directions, `block` evaluates the columns of the model,
 //! `evaluation` computes E, residuals and derivatives from them. `subset` and `condensed` make
 //! objectives over fewer rows.
 
+mod angles;
 mod best_weights;
 mod block;
 mod condensed;
 mod error;
 mod evaluation;
-mod lobe;
 mod rows;
 mod subset;
 pub(crate) mod weights;
 
 pub(crate) use best_weights::{solve, solve_for};
-pub(crate) use block::{BLOCK, dot, dot_of};
+pub(crate) use block::{BLOCK, PROCESSOR, dot, dot_of};
 pub use error::ObjectiveError;
 pub use evaluation::NormalEquations;
 pub(crate) use evaluation::{ProfileSums, ROUNDING};
-pub(crate) use lobe::LobeRows;
 pub use rows::{IncidenceError, MOST_FOLDS, Objective};
 pub(crate) use rows::{SIZES, Segment};

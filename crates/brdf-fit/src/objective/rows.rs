@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
-use brdf_core::fresnel::Dielectric;
+use brdf_core::Family;
 use brdf_core::shadowing::{Shadowing as _, VGroove};
-use brdf_core::{Family, Geometry};
 use serde::{Deserialize, Serialize};
 
+use super::angles::{AngleColumns, AngleRows, Angles};
 use super::error::ObjectiveError;
 use super::weights::Weights;
 use crate::format::in_degrees;
@@ -65,7 +65,7 @@ pub struct Objective {
 pub(super) struct Directions {
     /// R0(gamma).
     pub(super) fresnel: Vec<f64>,
-    pub(super) angles: Vec<Angles>,
+    pub(super) angles: AngleColumns,
     /// The index of the reading of each row; empty for condensed rows.
     pub(super) readings: Vec<usize>,
 }
@@ -75,46 +75,15 @@ impl Directions {
     pub(super) fn with_capacity(rows: usize) -> Self {
         Self {
             fresnel: Vec::new(),
-            angles: Vec::with_capacity(rows),
+            angles: AngleColumns::with_capacity(rows),
             readings: Vec::with_capacity(rows),
         }
     }
 
     /// The same with the Fresnel factors at a refractive index.
     pub(super) fn with_fresnel(self, n: f64) -> Self {
-        let fresnel = fresnel_column(&self.angles, n);
+        let fresnel = self.angles.rows(0..self.angles.len()).fresnel(n);
         Self { fresnel, ..self }
-    }
-}
-
-/// R0(gamma) of each row at a refractive index.
-fn fresnel_column(angles: &[Angles], n: f64) -> Vec<f64> {
-    let fresnel = Dielectric::new(n);
-    let relative = |angles: &Angles| fresnel.relative(angles.cos_gamma);
-    angles.iter().map(relative).collect()
-}
-
-/// The functions of the angles of a reading that the terms of the model need.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Angles {
-    pub(super) tan2_alpha: f64,
-    pub(super) sec_alpha: f64,
-    pub(super) cos_psi: f64,
-    pub(super) cos_theta: f64,
-    pub(super) cos_gamma: f64,
-    pub(super) sin2_gamma: f64,
-}
-
-impl Angles {
-    pub(super) fn new(geometry: &Geometry) -> Self {
-        Self {
-            tan2_alpha: geometry.tan2_alpha(),
-            sec_alpha: geometry.sec_alpha(),
-            cos_psi: geometry.cos_psi(),
-            cos_theta: geometry.cos_theta(),
-            cos_gamma: geometry.cos_gamma(),
-            sin2_gamma: geometry.sin2_gamma(),
-        }
     }
 }
 
@@ -270,8 +239,11 @@ impl Objective {
     /// The root of the weight of each row in E, as a factor on f_r cos theta; 0 for a reading of zero
     /// weight.
     pub(crate) fn row_weights(&self) -> Vec<f64> {
-        let rows = self.diffuse.iter().zip(self.angles());
-        rows.map(|(a, angles)| PI * a / angles.cos_theta).collect()
+        let rows = self
+            .diffuse
+            .iter()
+            .zip(self.angles(0..self.len()).cos_theta);
+        rows.map(|(a, cos_theta)| PI * a / cos_theta).collect()
     }
 
     /// The refractive index of the precomputed Fresnel factors.
@@ -284,13 +256,13 @@ impl Objective {
         if n == self.n {
             Cow::Borrowed(&self.directions.fresnel[..self.len()])
         } else {
-            Cow::Owned(fresnel_column(self.angles(), n))
+            Cow::Owned(self.angles(0..self.len()).fresnel(n))
         }
     }
 
-    /// The angles of each row.
-    pub(super) fn angles(&self) -> &[Angles] {
-        &self.directions.angles[..self.len()]
+    /// The angles of some rows.
+    pub(super) fn angles(&self, rows: Range<usize>) -> AngleRows<'_> {
+        self.directions.angles.rows(rows)
     }
 
     /// An objective without rows and directions.

@@ -2,9 +2,10 @@
 
 use brdf_core::ModelParameters;
 use nalgebra::{SMatrix, SVector};
+use pulp::{Simd, WithSimd};
 
 use crate::model::{Parameter, ReducedModel};
-use crate::objective::{BLOCK, Objective, ProfileSums, dot, solve_for};
+use crate::objective::{BLOCK, Objective, PROCESSOR, ProfileSums, dot, solve_for};
 
 /// The nonlinear parameters: k1, n and p.
 const NONLINEAR: [Parameter; 3] = [Parameter::K1, Parameter::N, Parameter::P];
@@ -75,12 +76,12 @@ impl Products {
                 }
                 columns = own.each_ref();
             }
-            for i in (0..5).filter(|i| used[*i]) {
-                products.measured[i] += dot(columns[i], &y);
-                for j in (0..=i).filter(|j| used[*j]) {
-                    products.columns[i][j] += dot(columns[i], columns[j]);
-                }
-            }
+            PROCESSOR.dispatch(AddBlock {
+                products: &mut products,
+                columns,
+                y: &y,
+                used,
+            });
         });
         products
     }
@@ -97,6 +98,38 @@ impl Products {
 
     pub(crate) fn of(&self, i: usize, j: usize) -> f64 {
         self.columns[i.max(j)][i.min(j)]
+    }
+}
+
+/// Adds the products of a block.
+struct AddBlock<'a> {
+    products: &'a mut Products,
+    columns: [&'a [f64; BLOCK]; 5],
+    y: &'a [f64; BLOCK],
+    used: [bool; 5],
+}
+
+impl WithSimd for AddBlock<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
+    fn with_simd<V: Simd>(self, _: V) {
+        let Self {
+            products,
+            columns,
+            y,
+            used,
+        } = self;
+        for i in (0..5).filter(|i| used[*i]) {
+            products.measured[i] += dot(columns[i], y);
+            for j in (0..=i).filter(|j| used[*j]) {
+                products.columns[i][j] += dot(columns[i], columns[j]);
+            }
+        }
     }
 }
 

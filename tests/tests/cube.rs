@@ -31,6 +31,10 @@ fn readings(i: usize) -> Vec<f64> {
 }
 
 /// A file of NumPy.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the elements are 32 bits wide"
+)]
 fn npy(descr: &str, shape: &[usize], fortran: bool, values: &[f64]) -> Vec<u8> {
     let shape: Vec<String> = shape.iter().map(|n| format!("{n},")).collect();
     let order = if fortran { "True" } else { "False" };

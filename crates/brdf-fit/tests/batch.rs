@@ -7,9 +7,7 @@ use std::f64::consts::PI;
 
 use brdf_core::{AnyBrdf, Geometry, ModelParameters};
 use brdf_fit::batch::{BatchOptions, BatchPlan, Scans, Status};
-use brdf_fit::{
-    FitError, FitOptions, Measurement, Measurements, Model, RefractiveIndex, Weights, fit,
-};
+use brdf_fit::{FitError, FitOptions, Measurement, Measurements, Model, RefractiveIndex, fit};
 use rand::rngs::StdRng;
 use rand::{RngExt as _, SeedableRng as _};
 use rayon::prelude::*;
@@ -183,7 +181,7 @@ fn compare(name: &str, angles: &[Measurement], model: Model, each: u64) -> Apart
     let options = BatchOptions {
         model,
         n: N,
-        weights: Weights::default(),
+        ..BatchOptions::default()
     };
     let plan = BatchPlan::new(angles, &options).unwrap();
     let seeds: Vec<(u64, u64)> = (0..each)
@@ -425,4 +423,39 @@ fn weights_of_scans_are_those_of_repeated_readings() {
     let single = fit(&measurements, &options).unwrap();
     assert!((fits.e_percent[0] / single.e_percent - 1.0).abs() < 1e-9);
     assert!((fits.k1[0] / single.parameters.k1 - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn the_first_stage_is_that_of_fit() {
+    let angles = in_plane(0.7, 1);
+    let limit = 30_f64.to_radians();
+    let options = BatchOptions {
+        n: N,
+        stage1_limit: Some(limit),
+        ..BatchOptions::default()
+    };
+    let plan = BatchPlan::new(&angles, &options).unwrap();
+    let readings = scan(0, 3, Model::Three, &angles);
+    let scans = Scans::new(&readings, angles.len()).unwrap();
+    let batch = plan.fit_many(scans).unwrap();
+    let options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(N)),
+        stage1_limit: limit,
+        stage2: None,
+        ..FitOptions::default()
+    };
+    let single = fit(&measurements(&angles, &readings), &options).unwrap();
+    assert!(single.readings < angles.len());
+    assert_eq!(batch.readings[0] as usize, single.readings);
+    assert!((batch.e_percent[0] / single.e_percent - 1.0).abs() < RELATIVE);
+    assert!((batch.k1[0] / single.parameters.k1 - 1.0).abs() < 1e-5);
+    let none = BatchOptions {
+        stage1_limit: Some(-0.1),
+        ..BatchOptions::default()
+    };
+    let error = BatchPlan::new(&angles, &none).unwrap_err();
+    assert!(
+        error.to_string().contains("no incidence angle is up to"),
+        "{error}"
+    );
 }

@@ -4,10 +4,11 @@ use brdf_core::N_DOMAIN;
 
 use super::own::OwnTable;
 use super::table::Table;
+use crate::format::in_degrees;
 use crate::model::{Model, Parameter, ReducedModel};
 use crate::objective::weights::{AssumedErrors, Weights};
 use crate::objective::{Objective, ObjectiveError};
-use crate::scan::{Measurement, MeasurementError, Measurements};
+use crate::scan::{Measurement, MeasurementError, Measurements, up_to};
 
 /// What the fits of a plan have in common.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +19,9 @@ pub struct BatchOptions {
     pub n: f64,
     /// The weights of the readings in E. Weights of relative errors depend on the readings and are refused.
     pub weights: Weights,
+    /// The largest incidence angle of the readings that are fitted, in radians: with the limit of the
+    /// paper's first stage, the fits are the optima of that stage. `None` fits all readings.
+    pub stage1_limit: Option<f64>,
 }
 
 impl Default for BatchOptions {
@@ -27,6 +31,7 @@ impl Default for BatchOptions {
             model: Model::Three,
             n: crate::model::DEFAULT_N,
             weights: Weights::default(),
+            stage1_limit: None,
         }
     }
 }
@@ -46,6 +51,9 @@ pub enum BatchError {
         /// What is wrong.
         error: MeasurementError,
     },
+    /// No incidence is within the limit of the first stage.
+    #[error("no incidence angle is up to {0} deg, the limit of stage 1")]
+    Stage1Limit(f64),
     /// The refractive index is outside the domain of the model.
     #[error("n = {0}: expected a number from 1 to 1e5")]
     RefractiveIndex(f64),
@@ -138,6 +146,17 @@ pub struct BatchPlan {
     pub(super) own: std::sync::OnceLock<OwnTable>,
 }
 
+/// The objective over the readings of the first stage.
+fn up_to_limit(objective: Objective, limit: Option<f64>) -> Result<Objective, BatchError> {
+    let Some(limit) = limit else {
+        return Ok(objective);
+    };
+    match up_to(objective.segments(), |segment| segment.psi, limit).len() {
+        0 => Err(BatchError::Stage1Limit(in_degrees(limit))),
+        count => Ok(objective.subset(|i| i < count)?),
+    }
+}
+
 impl BatchPlan {
     /// The plan of the angles of these readings, in their order, whose values have no effect. Angles are in
     /// radians, in the convention of [`Measurement`]; standard deviations are used where the weights ask for them.
@@ -172,6 +191,7 @@ impl BatchPlan {
         let scan = Measurements::new("angles", readings).map_err(|_| BatchError::NoReadings)?;
         let model = ReducedModel::from(options.model);
         let objective = Objective::new(&scan, options.model.family(), options.n, &options.weights)?;
+        let objective = up_to_limit(objective, options.stage1_limit)?;
         let factors = objective.fixed_columns().0.to_vec();
         let table = model
             .frees(Parameter::K1)

@@ -22,14 +22,12 @@ use crate::read::ReadOptions;
 use crate::read::csv::AngleTable;
 
 /// The options that have no effect on the fits of an array.
-const OF_SINGLE_SCANS: [&str; 20] = [
+const OF_SINGLE_SCANS: [&str; 18] = [
     "files",
     "again",
     "compare",
     "fix",
     "stage1",
-    "stage2",
-    "stage1_limit",
     "max_iterations",
     "robust",
     "energy_conserving",
@@ -52,7 +50,8 @@ pub(super) struct CubeArguments {
     /// Fit all scans of this array of NumPy, .npy, instead of FILE: one dimension runs over the readings
     /// of a scan, the others over the scans, such as the pixels of an image
     ///
-    /// Each scan is fitted to the optimum of stage 2, at some microseconds a scan. The elements are 32 or 64 bit
+    /// Each scan is fitted to the optimum of stage 2, or with --stage2 none to that of stage 1, at some
+    /// microseconds a scan. The elements are 32 or 64 bit
     /// numbers: f_r in 1/sr, or what --declare states, as in --declare quantity=reflectance_factor. NaN
     /// is a reading that was not taken. The array is read in pieces and need not fit into memory.
     #[arg(long, value_name = "ARRAY", requires = "angles", requires = "output", conflicts_with_all = OF_SINGLE_SCANS)]
@@ -192,6 +191,7 @@ fn batch_options(arguments: &Arguments, angles: &AngleTable) -> Result<BatchOpti
         model,
         n,
         weights: options.weights,
+        stage1_limit: options.stage2.is_none().then_some(options.stage1_limit),
     })
 }
 

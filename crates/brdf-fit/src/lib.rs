@@ -72,13 +72,16 @@ pub use inference::{
     ErrorSizes, Estimate, Hint, Interval, Knowledge, LeftOut, NOT_PREDICTED_PERCENT, Noise,
     NoiseTests, ParameterIntervals, Physics, PredictedIncidence, Quality, Reflectance,
     RelativePrediction, Reliance, TEST_LEVEL, Uncertainty, VERDICT_MARGIN, Verdict, Warning,
-    Without, assess, intervals_of_many, most_influential, rests_on,
+    Without, assess, intervals_of_many, intervals_of_many_on_one_thread, most_influential,
+    rests_on,
 };
 pub use model::{
     DEFAULT_N, FixedError, FixedParameters, K1_RANGE, Model, N_RANGE, Parameter, ReducedModel,
 };
 pub use objective::weights::{AngleWeight, AssumedErrors, RELATIVE_FLOOR, Weights, solid_angles};
-pub use objective::{IncidenceError, MOST_FOLDS, NormalEquations, Objective, ObjectiveError};
+pub use objective::{
+    IncidenceError, MOST_FOLDS, NormalEquations, Objective, ObjectiveError, PARALLEL_FROM,
+};
 pub use progress::{Cancelled, NoObserver, Observer, Part, Phase, Step, Task};
 pub use read::{LazyScan, ReadError, ReadOptions};
 pub use report::{Depth, Document, DocumentError, ModelChoice, Report};

@@ -37,7 +37,7 @@ pub use cross_validation::{CrossValidation, PredictedIncidence, RelativePredicti
 pub use deviations::{Deviations, Quality};
 pub use estimate::{Estimate, Interval, Knowledge};
 pub use hint::Hint;
-pub use many::{ParameterIntervals, intervals_of_many};
+pub use many::{ParameterIntervals, intervals_of_many, intervals_of_many_on_one_thread};
 pub use model_comparison::{ASSESSED_BINS, ASSESSED_READINGS, Candidate, LeftOut};
 pub use noise::{ErrorSizes, Noise, NoiseTests, TEST_LEVEL};
 pub use physics::{Physics, Reflectance};

@@ -15,7 +15,7 @@ pub(crate) const ROUNDING: f64 = 1e-20;
 
 /// From this number of rows on, incidences are evaluated in parallel: for the 112 readings of a
 /// usual scan, starting the threads takes as long as the whole fit.
-const PARALLEL_FROM: usize = 1 << 13;
+pub const PARALLEL_FROM: usize = 1 << 13;
 
 /// E with the terms of a Gauss-Newton step: J^T r, half the gradient of E, and J^T J, half its
 /// approximate Hessian. P is the number of free parameters.

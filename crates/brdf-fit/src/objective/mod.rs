@@ -17,7 +17,7 @@ pub(crate) mod weights;
 pub(crate) use best_weights::{solve, solve_for};
 pub(crate) use block::{BLOCK, PROCESSOR, dot, dot_of};
 pub use error::ObjectiveError;
-pub use evaluation::NormalEquations;
+pub use evaluation::{NormalEquations, PARALLEL_FROM};
 pub(crate) use evaluation::{ProfileSums, ROUNDING};
 pub use rows::{IncidenceError, MOST_FOLDS, Objective};
 pub(crate) use rows::{SIZES, Segment};

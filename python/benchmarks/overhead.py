@@ -13,6 +13,7 @@ import brdf_fit as bf
 from brdf_fit import _native
 
 SCANS = 100_000
+SCANS_WITH_INTERVALS = 1000
 
 
 def best(work: Callable[[], object], runs: int) -> float:
@@ -58,6 +59,10 @@ def main() -> None:
         for threads in (1, None):
             what = f"fit_many, {name}, {threads or 'all'} thread(s), per scan"
             show(what, lambda: geometry.fit_many(scans, threads=threads), 10, SCANS)
+    some = many[:SCANS_WITH_INTERVALS]
+    for threads in (1, None):
+        what = f"fit_many with intervals, {threads or 'all'} thread(s), per scan"
+        show(what, lambda: geometry.fit_many(some, intervals=True, threads=threads), 5, SCANS_WITH_INTERVALS)
 
 
 if __name__ == "__main__":

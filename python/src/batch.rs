@@ -3,7 +3,10 @@
 use std::ops::ControlFlow;
 
 use brdf_fit::batch::{self, BatchError, BatchFit, BatchObserver, BatchOptions, Scans};
-use brdf_fit::{Measurement, Model};
+use brdf_fit::{
+    Measurement, Model, PARALLEL_FROM, Parameter, ParameterIntervals, intervals_of_many,
+    intervals_of_many_on_one_thread,
+};
 use numpy::{Element, IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -14,7 +17,18 @@ use crate::pool;
 
 /// The angles of many scans, with what their fits share.
 #[pyclass(frozen, module = "brdf_fit._native")]
-pub(crate) struct BatchPlan(batch::BatchPlan);
+pub(crate) struct BatchPlan {
+    plan: batch::BatchPlan,
+    angles: Vec<Measurement>,
+    options: BatchOptions,
+}
+
+/// What is computed beside the fits.
+#[derive(Clone, Copy)]
+struct Wanted {
+    errors: bool,
+    intervals: bool,
+}
 
 #[pymethods]
 impl BatchPlan {
@@ -48,28 +62,41 @@ impl BatchPlan {
             n,
             ..BatchOptions::default()
         };
-        pool::run(py, None, |_| batch::BatchPlan::new(&angles, &options))?
-            .map(Self)
-            .map_err(value_error)
+        let plan = pool::run(py, None, |_| batch::BatchPlan::new(&angles, &options))?;
+        Ok(Self {
+            plan: plan.map_err(value_error)?,
+            angles,
+            options,
+        })
     }
 
-    /// The columns of the fits of an array (scans, readings) of float64 or float32.
-    #[pyo3(signature = (scans, weights, errors, threads))]
+    /// The names of the free parameters.
+    #[getter]
+    fn free(&self) -> Vec<String> {
+        let free = self.options.model.free().iter().copied();
+        free.map(name).collect()
+    }
+
+    /// The columns of the fits of an array (scans, readings) of float64 or float32. The intervals have no
+    /// regard to the weights.
+    #[pyo3(signature = (scans, weights, errors, intervals, threads))]
     fn fit_many<'py>(
         &self,
         py: Python<'py>,
         scans: &Bound<'py, PyAny>,
         weights: Option<&Bound<'py, PyAny>>,
         errors: bool,
+        intervals: bool,
         threads: Option<usize>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let fit = if let Ok(scans) = scans.cast::<PyArray2<f64>>() {
-            self.fit_typed::<f64>(py, &scans.readonly(), weights, errors, threads)
+        let wanted = Wanted { errors, intervals };
+        let (fit, intervals) = if let Ok(scans) = scans.cast::<PyArray2<f64>>() {
+            self.fit_typed::<f64>(py, &scans.readonly(), weights, wanted, threads)
         } else {
             let scans = scans.cast::<PyArray2<f32>>()?;
-            self.fit_typed::<f32>(py, &scans.readonly(), weights, errors, threads)
+            self.fit_typed::<f32>(py, &scans.readonly(), weights, wanted, threads)
         }?;
-        columns(py, fit)
+        columns(py, fit, intervals)
     }
 }
 
@@ -79,9 +106,9 @@ impl BatchPlan {
         py: Python<'_>,
         array: &PyReadonlyArray2<'_, T>,
         weights: Option<&Bound<'_, PyAny>>,
-        errors: bool,
+        wanted: Wanted,
         threads: Option<usize>,
-    ) -> PyResult<BatchFit> {
+    ) -> PyResult<Fitted> {
         let readings = scans(array)?;
         let weights = weights
             .map(|weights| Ok::<_, PyErr>(weights.cast::<PyArray2<T>>()?.readonly()))
@@ -92,12 +119,14 @@ impl BatchPlan {
             Some(all) => Some(scans(all)?),
         };
         let work = Work {
-            plan: &self.0,
+            of: self,
             readings,
             weights,
-            errors,
+            wanted,
         };
-        let fit = if threads == Some(1) {
+        // The intervals of large scans need a pool in any case. That of this package can be forked.
+        let needs_pool = wanted.intervals && self.angles.len() >= PARALLEL_FROM;
+        let fit = if threads == Some(1) && !needs_pool {
             work.fit_on_this_thread(py)?
         } else {
             pool::run(py, threads, |interrupt| {
@@ -108,12 +137,15 @@ impl BatchPlan {
     }
 }
 
-/// The fits of one call.
+/// The fits of one call, and the intervals of each parameter where they are wanted.
+type Fitted = (BatchFit, Vec<ParameterIntervals>);
+
+/// What one call computes.
 struct Work<'a, T> {
-    plan: &'a batch::BatchPlan,
+    of: &'a BatchPlan,
     readings: Scans<'a, T>,
     weights: Option<Scans<'a, T>>,
-    errors: bool,
+    wanted: Wanted,
 }
 
 impl<T: Copy + Into<f64> + Sync> Work<'_, T> {
@@ -121,22 +153,43 @@ impl<T: Copy + Into<f64> + Sync> Work<'_, T> {
         &self,
         one_thread: bool,
         observer: &mut dyn BatchObserver,
-    ) -> Result<BatchFit, BatchError> {
-        let mut run = self.plan.run(self.readings);
+    ) -> Result<Fitted, BatchError> {
+        let mut run = self.of.plan.run(self.readings);
         if let Some(weights) = self.weights {
             run = run.weights(weights);
         }
-        if self.errors {
+        if self.wanted.errors {
             run = run.constant_noise_errors();
         }
         if one_thread {
             run = run.on_one_thread();
         }
-        run.fit_observed(observer)
+        let fit = run.fit_observed(observer)?;
+        let intervals = if self.wanted.intervals {
+            self.intervals(one_thread, observer)?
+        } else {
+            Vec::new()
+        };
+        Ok((fit, intervals))
+    }
+
+    fn intervals(
+        &self,
+        one_thread: bool,
+        observer: &mut dyn BatchObserver,
+    ) -> Result<Vec<ParameterIntervals>, BatchError> {
+        let BatchPlan {
+            angles, options, ..
+        } = self.of;
+        if one_thread {
+            intervals_of_many_on_one_thread(angles, options, self.readings, observer)
+        } else {
+            intervals_of_many(angles, options, self.readings, observer)
+        }
     }
 
     /// The fits without a pool, as the workers of an engine and forked processes need them.
-    fn fit_on_this_thread(&self, py: Python<'_>) -> PyResult<Result<BatchFit, BatchError>> {
+    fn fit_on_this_thread(&self, py: Python<'_>) -> PyResult<Result<Fitted, BatchError>> {
         let mut exception = None;
         let fit = py.detach(|| {
             self.fit(true, &mut |_, _| match pool::check_signals() {
@@ -152,7 +205,11 @@ impl<T: Copy + Into<f64> + Sync> Work<'_, T> {
 }
 
 /// One contiguous array for each column.
-fn columns(py: Python<'_>, fit: BatchFit) -> PyResult<Bound<'_, PyDict>> {
+fn columns(
+    py: Python<'_>,
+    fit: BatchFit,
+    intervals: Vec<ParameterIntervals>,
+) -> PyResult<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
     let status: Vec<u8> = fit.status.iter().map(|status| *status as u8).collect();
     columns.set_item("k2", fit.k2.into_pyarray(py))?;
@@ -170,5 +227,17 @@ fn columns(py: Python<'_>, fit: BatchFit) -> PyResult<Bound<'_, PyDict>> {
         columns.set_item("n_stderr", errors.n.into_pyarray(py))?;
         columns.set_item("p_stderr", errors.p.into_pyarray(py))?;
     }
+    for all in intervals {
+        let name = name(all.parameter);
+        let standard_error = all.standard_error.into_pyarray(py);
+        columns.set_item(format!("{name}_standard_error"), standard_error)?;
+        columns.set_item(format!("{name}_from"), all.from.into_pyarray(py))?;
+        columns.set_item(format!("{name}_to"), all.to.into_pyarray(py))?;
+    }
     Ok(columns)
+}
+
+/// The name of a parameter in Python.
+fn name(parameter: Parameter) -> String {
+    parameter.to_string().to_lowercase()
 }

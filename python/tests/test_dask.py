@@ -59,6 +59,22 @@ def test_a_data_array_gives_a_lazy_dataset(geometry: bf.Geometry) -> None:
         bf.dask.fit_many(geometry, scans, dim="view")
 
 
+def test_intervals_are_columns(geometry: bf.Geometry) -> None:
+    scans = simulated(geometry, 6)
+    scans[4] = np.nan
+    expected = geometry.fit_many(scans, errors=True, intervals=True)
+    columns = bf.dask.fit_many(
+        geometry, da.from_array(scans, chunks=(4, -1)), errors=True, intervals=True
+    )
+    assert list(columns) == list(expected.columns())
+    assert_equal(dask.compute(columns)[0], expected)
+    table = xarray.DataArray(scans, dims=("scan", "reading"))
+    assert_equal(bf.dask.fit_many(geometry, table, errors=True, intervals=True).compute(), expected)
+    assert_equal(expected.to_dataset(["scan"]), expected)
+    with pytest.raises(ValueError, match="weights and intervals=True are both given"):
+        bf.dask.fit_many(geometry, da.from_array(scans), weights=np.ones(112), intervals=True)
+
+
 def test_weights_of_all_shapes(geometry: bf.Geometry) -> None:
     scans = simulated(geometry, 6)
     weights = np.random.default_rng(1).uniform(0.5, 2.0, scans.shape)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import columns_equal, simulated
+from numpy.typing import NDArray
 
 import brdf_fit as bf
 
@@ -142,12 +143,71 @@ def test_standard_errors_scatter_as_the_fits(geometry: bf.Geometry) -> None:
     assert "k1_stderr" not in geometry.fit_many(f_r).columns()
 
 
+@pytest.mark.parametrize("model", ["three", "three+n"])
+@pytest.mark.parametrize("precision", [np.float64, np.float32])
+def test_intervals_are_those_of_the_single_fit(scan: bf.Scan, model: str, precision: type) -> None:
+    geometry = bf.Geometry(scan.psi, scan.theta, scan.phi, n=1.5, model=model)
+    scans: NDArray[Any] = simulated(geometry, 6).astype(precision)
+    scans[1, 3:40:2] = np.nan
+    scans[2] = np.nan
+    scans[3] = 0.0
+    scans[4] = 0.2
+    scans[5] = 0.2 + 1e-3 * np.cos(7.0 * np.arange(len(geometry)))
+    many = geometry.fit_many(scans.reshape(2, 3, -1), intervals=True)
+    names = ["k2", "kd", "k1"] + ["n"] * (model == "three+n")
+    assert list(many.intervals) == list(many.standard_errors) == names
+    for i, values in enumerate(scans.astype(np.float64)):
+        at = divmod(i, 3)
+        if i in (2, 3, 4):
+            # Not taken, zero, and the same at all angles: the single fit refuses them.
+            assert all(np.isnan(interval[at]).all() for interval in many.intervals.values())
+            assert all(np.isnan(error[at]) for error in many.standard_errors.values())
+            continue
+        one = bf.fit(geometry.psi, geometry.theta, geometry.phi, values, n=1.5, model=model)
+        for name in names:
+            assert np.array_equal(many.intervals[name][at], one.intervals[name], equal_nan=True)
+            assert np.array_equal(many.standard_errors[name][at], one.stderr[name], equal_nan=True)
+    assert np.isfinite(many.intervals["k1"][0, :2]).all()
+
+
+def test_intervals_have_columns_of_their_own(geometry: bf.Geometry) -> None:
+    scans = simulated(geometry, 3)
+    plain = geometry.fit_many(scans)
+    assert plain.intervals == plain.standard_errors == {}
+    many = geometry.fit_many(scans, errors=True, intervals=True)
+    columns = many.columns()
+    new = [f"{name}_{end}" for name in ("k2", "kd", "k1") for end in ("standard_error", "from", "to")]
+    assert list(columns) == [*geometry.fit_many(scans, errors=True).columns(), *new]
+    assert np.array_equal(columns["k1_standard_error"], many.standard_errors["k1"])
+    assert np.array_equal(columns["k1_from"], many.intervals["k1"][:, 0])
+    assert np.array_equal(columns["k1_to"], many.intervals["k1"][:, 1])
+    assert (columns["k1_standard_error"] != columns["k1_stderr"]).all()
+    pytest.importorskip("pandas")
+    assert np.array_equal(many.to_frame()["k1_to"], columns["k1_to"])
+    single = bf.fit_many(
+        geometry.psi, geometry.theta, geometry.phi, scans[0], n=1.5, intervals=True
+    )
+    assert np.array_equal(single.intervals["k1"], many.intervals["k1"][0])
+    assert geometry.fit_many(scans[:0], intervals=True).intervals["k1"].shape == (0, 2)
+
+
+def test_intervals_cover_the_truth(geometry: bf.Geometry) -> None:
+    f_r = bf.evaluate(geometry.psi, geometry.theta, geometry.phi, k2=0.3, kd=0.1, k1=0.2, n=1.5)
+    noise = np.random.default_rng(2).standard_normal((100, len(geometry)))
+    many = geometry.fit_many(f_r * (1.0 + 0.02 * noise), intervals=True)
+    for name, truth in {"k2": 0.3, "kd": 0.1, "k1": 0.2}.items():
+        low, high = np.moveaxis(many.intervals[name], -1, 0)
+        assert ((low < truth) & (truth < high)).mean() > 0.85
+
+
 def test_bits_do_not_depend_on_threads_and_division(geometry: bf.Geometry) -> None:
     scans = simulated(geometry, 1500)
     scans[7, 3] = np.nan
     expected = geometry.fit_many(scans, errors=True, threads=1)
+    some = geometry.fit_many(scans[:150], intervals=True, threads=1)
     for threads in (None, 2, 3):
         assert columns_equal(geometry.fit_many(scans, errors=True, threads=threads), expected)
+        assert columns_equal(geometry.fit_many(scans[:150], intervals=True, threads=threads), some)
     parts = [geometry.fit_many(part) for part in np.array_split(scans, [1, 66, 700, 1499])]
     assert np.array_equal(np.concatenate([part.k1 for part in parts]), expected.k1)
 
@@ -213,6 +273,11 @@ def test_pickled_geometry_is_the_same(geometry: bf.Geometry) -> None:
             ValueError,
             "5 readings",
         ),
+        (
+            lambda g: g.fit_many(np.ones((2, 112)), weights=np.ones(112), intervals=True),
+            ValueError,
+            "weights and intervals=True are both given: expected one of them",
+        ),
         (lambda g: g.fit_many(np.ones(112), threads=0), ValueError, "threads = 0"),
         (lambda g: bf.Geometry([0.1, 2.0], 0.0, n=1.5), ValueError, "reading 1: incidence"),
         (lambda g: bf.Geometry([0.1, 0.2], [0.0] * 3, n=1.5), ValueError, "psi (2,), theta (3,)"),
@@ -237,7 +302,8 @@ def fit(threads):
     geometry = bf.Geometry([0.1, 0.5, 0.9, 0.3, 0.2], [-0.1, -0.4, 0.3, 0.2, 0.1], n=1.5)
     scans = np.linspace(1.0, 2.0, 2000 * 5).reshape(2000, 5)
     one = bf.fit(geometry.psi, geometry.theta, 0.0, scans[0], n=1.5)
-    return geometry.fit_many(scans, threads=threads).k2.sum() + one.parameters.k2
+    some = geometry.fit_many(scans[:10], threads=threads, intervals=True)
+    return geometry.fit_many(scans, threads=threads).k2.sum() + one.parameters.k2 + some.k2.sum()
 
 if __name__ == "__main__":
     expected = fit(None)
@@ -282,14 +348,28 @@ def test_other_threads_run_meanwhile(geometry: bf.Geometry) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are those of POSIX")
+@pytest.mark.parametrize("intervals", [False, True])
 @pytest.mark.parametrize("threads", [1, None])
-def test_an_interrupt_ends_the_call(geometry: bf.Geometry, threads: int | None) -> None:
+def test_an_interrupt_ends_the_call(geometry: bf.Geometry, threads: int | None, intervals: bool) -> None:
     part = slice(None, None, 5)
     free = bf.Geometry(geometry.psi[part], geometry.theta[part], n=1.5, model="three+n")
-    scans = np.tile(simulated(geometry, 100)[:, part], (1500, 1))
+    scans = np.tile(simulated(geometry, 100)[:, part], (100 if intervals else 1500, 1))
     timer = threading.Timer(0.1, lambda: os.kill(os.getpid(), signal.SIGINT))
     timer.start()
     with pytest.raises(KeyboardInterrupt):
-        free.fit_many(scans, threads=threads)
+        free.fit_many(scans, intervals=intervals, threads=threads)
         pytest.fail("the call has ended before the interrupt")
     timer.join()
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="the threads are counted on Linux")
+def test_one_thread_is_the_calling_one() -> None:
+    script = """
+import os, numpy as np, brdf_fit as bf
+geometry = bf.Geometry([0.1, 0.5, 0.9, 0.3, 0.2], [-0.1, -0.4, 0.3, 0.2, 0.1], n=1.5)
+before = len(os.listdir("/proc/self/task"))
+geometry.fit_many(np.linspace(1.0, 2.0, 50).reshape(10, 5), errors=True, intervals=True, threads=1)
+assert len(os.listdir("/proc/self/task")) == before
+"""
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=300)
+    assert result.returncode == 0, result.stderr

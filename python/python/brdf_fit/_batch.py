@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +28,19 @@ STATUS = (
     "all readings are zero",
     "a reading is out of range",
 )
+
+COLUMNS = ("k2", "kd", "k1", "n", "p", "e_percent", "readings", "status")
+STDERR_COLUMNS = ("k2_stderr", "kd_stderr", "k1_stderr", "n_stderr", "p_stderr")
+
+WEIGHTS_AND_INTERVALS = (
+    "weights and intervals=True are both given: expected one of them, because the intervals are those of readings "
+    "without weights"
+)
+
+
+def interval_columns(parameter: str) -> tuple[str, str, str]:
+    """The names of the columns of the standard error of a parameter and of the ends of its interval."""
+    return f"{parameter}_standard_error", f"{parameter}_from", f"{parameter}_to"
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +78,13 @@ class BatchFit:
     """As ``k2_stderr``, of n; NaN where n is not free."""
     p_stderr: Floats | None = None
     """As ``k2_stderr``, of p; NaN where p is not free."""
+    standard_errors: dict[str, Floats] = field(default_factory=dict)
+    """The standard error of each free parameter by its name, where ``intervals=True``: as ``stderr`` of
+    :func:`brdf_fit.fit`, from errors of the readings that are estimated from the residuals of each scan, and
+    not of constant size as those of ``k2_stderr``. NaN where there is none."""
+    intervals: dict[str, Floats] = field(default_factory=dict)
+    """The interval of 95 % of each free parameter by its name, shape (..., 2), where ``intervals=True``: the
+    ``intervals`` of :func:`brdf_fit.fit`. An end is NaN where the interval is unbounded or not known."""
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -77,9 +97,14 @@ class BatchFit:
         return np.sqrt(self.e_percent / 100.0)
 
     def columns(self) -> dict[str, NDArray[Any]]:
-        """The columns by name, without the standard errors where there are none."""
-        found = ((field.name, getattr(self, field.name)) for field in fields(self))
-        return {name: column for name, column in found if column is not None}
+        """The columns by name, without the standard errors and the intervals where there are none. The latter
+        are ``k1_standard_error``, ``k1_from`` and ``k1_to``, as those of the command line."""
+        found = ((name, getattr(self, name)) for name in (*COLUMNS, *STDERR_COLUMNS))
+        columns = {name: column for name, column in found if column is not None}
+        for name, interval in self.intervals.items():
+            of_name = (self.standard_errors[name], interval[..., 0], interval[..., 1])
+            columns.update(zip(interval_columns(name), of_name))
+        return columns
 
     def to_frame(self) -> pandas.DataFrame:
         """A table of pandas with one row for each scan, in C order. Needs pandas."""
@@ -220,6 +245,7 @@ class Geometry:
         *,
         weights: ArrayLike | None = None,
         errors: bool = False,
+        intervals: bool = False,
         threads: int | None = None,
     ) -> BatchFit:
         """Fits scans, each to the global optimum.
@@ -233,16 +259,21 @@ class Geometry:
                 reading that was not taken.
             weights: Weights of the readings of at least 0: shape (readings,) or that of the scans. Scans with
                 weights or gaps take four times as long.
-            errors: Whether to compute standard errors for noise of constant size.
+            errors: Whether to compute standard errors for noise of constant size: ``k1_stderr`` and so on.
+            intervals: Whether to compute ``intervals`` and ``standard_errors`` by the full inference of single
+                scans. It takes a few hundred times as long as the fits, and needs scans without weights.
             threads: The number of threads; None takes all cores. With 1, as the workers of an engine need it,
-                no thread is started.
+                no thread is started, except for intervals of scans of 8192 readings or more.
 
         Returns:
             One array of shape (...) for each column.
 
         Raises:
-            ValueError: The last axis has not one value for each angle, or a weight is negative.
+            ValueError: The last axis has not one value for each angle, a weight is negative, or weights and
+                intervals are both given.
         """
+        if intervals and weights is not None:
+            raise ValueError(WEIGHTS_AND_INTERVALS)
         array = _readings("scans", scans)
         shape = array.shape[:-1]
         given = None
@@ -251,8 +282,14 @@ class Geometry:
             if given.dtype != array.dtype:
                 given, array = given.astype(np.float64), array.astype(np.float64)
             given = _rows(given if given.ndim == 1 else _as_scans(given, array.shape))
-        columns = self._plan.fit_many(_rows(array), given, errors, threads)
-        return BatchFit(**{name: column.reshape(shape) for name, column in columns.items()})
+        found = self._plan.fit_many(_rows(array), given, errors, intervals, threads)
+        columns = {name: column.reshape(shape) for name, column in found.items()}
+        standard_errors, ends = {}, {}
+        for name in self._plan.free if intervals else ():
+            standard_error, low, high = (columns.pop(column) for column in interval_columns(name))
+            standard_errors[name] = standard_error
+            ends[name] = np.stack([low, high], axis=-1)
+        return BatchFit(**columns, standard_errors=standard_errors, intervals=ends)
 
 
 def fit_many(
@@ -268,6 +305,7 @@ def fit_many(
     model: str = "three",
     weights: ArrayLike | None = None,
     errors: bool = False,
+    intervals: bool = False,
     threads: int | None = None,
 ) -> BatchFit:
     """Fits scans of the same angles: ``Geometry(psi, theta, phi, n=n, model=model).fit_many(scans)``.
@@ -287,7 +325,9 @@ def fit_many(
         n=n,
         model=model,
     )
-    return geometry.fit_many(scans, weights=weights, errors=errors, threads=threads)
+    return geometry.fit_many(
+        scans, weights=weights, errors=errors, intervals=intervals, threads=threads
+    )
 
 
 @lru_cache(maxsize=64)

@@ -37,11 +37,14 @@ class BatchPlan:
         n: float,
         model: str,
     ) -> BatchPlan: ...
+    @property
+    def free(self) -> list[str]: ...
     def fit_many(
         self,
         scans: NDArray[Any],
         weights: NDArray[Any] | None,
         errors: bool,
+        intervals: bool,
         threads: int | None,
     ) -> dict[str, NDArray[Any]]: ...
 

@@ -16,13 +16,11 @@ import dask.array as da
 import numpy as np
 from numpy.typing import NDArray
 
-from ._batch import Geometry
+from ._batch import COLUMNS, STDERR_COLUMNS, WEIGHTS_AND_INTERVALS, Geometry, interval_columns
 
 if TYPE_CHECKING:
     import xarray
 
-COLUMNS = ("k2", "kd", "k1", "n", "p", "e_percent", "readings", "status")
-STDERR_COLUMNS = ("k2_stderr", "kd_stderr", "k1_stderr", "n_stderr", "p_stderr")
 INTEGERS = {"readings": np.uint32, "status": np.uint8}
 
 
@@ -34,6 +32,7 @@ def fit_many(
     dim: str = ...,
     weights: da.Array | xarray.DataArray | NDArray[Any] | None = ...,
     errors: bool = ...,
+    intervals: bool = ...,
 ) -> xarray.Dataset: ...
 @overload
 def fit_many(
@@ -43,6 +42,7 @@ def fit_many(
     dim: str = ...,
     weights: da.Array | xarray.DataArray | NDArray[Any] | None = ...,
     errors: bool = ...,
+    intervals: bool = ...,
 ) -> dict[str, da.Array]: ...
 def fit_many(
     geometry: Geometry,
@@ -51,6 +51,7 @@ def fit_many(
     dim: str = "reading",
     weights: da.Array | xarray.DataArray | NDArray[Any] | None = None,
     errors: bool = False,
+    intervals: bool = False,
 ) -> dict[str, da.Array] | xarray.Dataset:
     """Fits scans lazily, chunk by chunk.
 
@@ -64,24 +65,32 @@ def fit_many(
         dim: The dimension of the readings of a DataArray.
         weights: Weights of the readings of at least 0, shape (readings,) or that of the scans.
         errors: Whether to compute standard errors for noise of constant size.
+        intervals: Whether to compute the standard errors and the intervals of 95 % of each free parameter by the
+            full inference of single scans: the columns ``k1_standard_error``, ``k1_from``, ``k1_to`` and so on.
+            It takes a few hundred times as long as the fits, and needs scans without weights.
 
     Returns:
         For a Dask array, a dictionary of Dask arrays (...): the columns of :class:`brdf_fit.BatchFit`. For a
         DataArray, a Dataset of them with its other dimensions and coordinates.
 
     Raises:
-        ValueError: The number of readings is not that of the geometry, or ``dim`` is no dimension. Negative weights
-            are found when the columns are computed.
+        ValueError: The number of readings is not that of the geometry, ``dim`` is no dimension, or weights and
+            intervals are both given. Negative weights are found when the columns are computed.
     """
+    if intervals and weights is not None:
+        raise ValueError(WEIGHTS_AND_INTERVALS)
+    names = COLUMNS + (STDERR_COLUMNS if errors else ())
+    if intervals:
+        names += tuple(column for name in geometry._plan.free for column in interval_columns(name))
     if isinstance(scans, da.Array):
-        return _fit_array(geometry, scans, weights, errors)
+        return _fit_array(geometry, scans, weights, names)
     if dim not in scans.dims:
         raise ValueError(f"the scans have the dimensions {scans.dims}: expected one of them to be {dim!r}")
-    return _fit_data_array(geometry, scans, dim, weights, errors)
+    return _fit_data_array(geometry, scans, dim, weights, names)
 
 
 def _fit_data_array(
-    geometry: Geometry, scans: xarray.DataArray, dim: str, weights: Any, errors: bool
+    geometry: Geometry, scans: xarray.DataArray, dim: str, weights: Any, names: tuple[str, ...]
 ) -> xarray.Dataset:
     import xarray
 
@@ -89,14 +98,16 @@ def _fit_data_array(
     if isinstance(weights, xarray.DataArray):
         same = set(weights.dims) == {dim}
         weights = weights.data if same else weights.broadcast_like(ordered).transpose(*ordered.dims).data
-    columns = _fit_array(geometry, da.asarray(ordered.data), weights, errors)
+    columns = _fit_array(geometry, da.asarray(ordered.data), weights, names)
     kept = {name: coord for name, coord in ordered.coords.items() if dim not in coord.dims}
     return xarray.Dataset(
         {name: (ordered.dims[:-1], column) for name, column in columns.items()}, coords=kept
     )
 
 
-def _fit_array(geometry: Geometry, scans: da.Array, weights: Any, errors: bool) -> dict[str, da.Array]:
+def _fit_array(
+    geometry: Geometry, scans: da.Array, weights: Any, names: tuple[str, ...]
+) -> dict[str, da.Array]:
     if scans.ndim == 0 or scans.shape[-1] != len(geometry):
         raise ValueError(
             f"the scans have the shape {scans.shape}: expected (..., {len(geometry)}), as the geometry has angles"
@@ -108,7 +119,6 @@ def _fit_array(geometry: Geometry, scans: da.Array, weights: Any, errors: bool) 
     elif weights is not None:
         blocks.append(da.broadcast_to(da.asarray(weights), scans.shape).rechunk(scans.chunks))
         weights = None
-    names = COLUMNS + (STDERR_COLUMNS if errors else ())
     table = da.map_blocks(
         _columns,
         *blocks,
@@ -133,6 +143,12 @@ def _columns(
 ) -> NDArray[np.float64]:
     """The fits of a block, with the columns on the last axis."""
     given = weights if own_weights is None else own_weights
-    many = geometry.fit_many(scans, weights=given, errors="k2_stderr" in names, threads=1)
+    many = geometry.fit_many(
+        scans,
+        weights=given,
+        errors=not set(STDERR_COLUMNS).isdisjoint(names),
+        intervals=any(name.endswith("_standard_error") for name in names),
+        threads=1,
+    )
     columns = many.columns()
     return np.stack([columns[name] for name in names], axis=-1, dtype=np.float64)

@@ -12,7 +12,8 @@ use crate::model::Parameter;
 use crate::progress::{NoObserver, Phase, Progress};
 use crate::scan::{Measurement, Measurements, RefractiveIndex};
 
-/// The number of scans of each thread between two calls of the observer: with 112 readings, 0.03 to 0.15 s of work.
+/// The number of scans of each thread between two calls of the observer: with 112 readings they take 0.03
+/// to 0.15 s.
 const REPORTED: usize = 64;
 
 /// The intervals of one parameter: one value for each scan in each column, NaN where none is known.
@@ -95,12 +96,7 @@ fn all_intervals<T: Copy + Into<f64> + Sync>(
     observer: &mut dyn BatchObserver,
 ) -> Result<Vec<ParameterIntervals>, BatchError> {
     scans.check(angles.len())?;
-    let fit_options = FitOptions {
-        model: options.model,
-        refractive_index: Some(RefractiveIndex::Same(options.n)),
-        weights: options.weights.clone(),
-        ..FitOptions::default()
-    };
+    let fit_options = of_single_scans(options);
     let free = options.model.free();
     let column = || Vec::with_capacity(scans.len());
     let mut all: Vec<ParameterIntervals> = free
@@ -152,6 +148,22 @@ impl ParameterIntervals {
     }
 }
 
+/// The options of a single scan that is fitted as those of a batch: within the limit of the first stage by
+/// this stage alone.
+fn of_single_scans(options: &BatchOptions) -> FitOptions {
+    let mut single = FitOptions {
+        model: options.model,
+        refractive_index: Some(RefractiveIndex::Same(options.n)),
+        weights: options.weights.clone(),
+        ..FitOptions::default()
+    };
+    if let Some(limit) = options.stage1_limit {
+        single.stage1_limit = limit;
+        single.stage2 = None;
+    }
+    single
+}
+
 /// The uncertainty of one scan; `None` where it cannot be fitted.
 fn uncertainty<T: Copy + Into<f64>>(
     angles: &[Measurement],
@@ -180,16 +192,14 @@ fn uncertainty<T: Copy + Into<f64>>(
 mod tests {
     use super::*;
     use crate::fit::fit;
-    use crate::inference::test_scans::rippled;
+    use crate::inference::test_scans::{options, rippled};
     use crate::report::{Depth, Report};
 
-    fn all(values: &[f64], scan: &Measurements) -> Vec<ParameterIntervals> {
+    fn all(values: &[f64], scan: &Measurements, options: &BatchOptions) -> Vec<ParameterIntervals> {
         let scans = Scans::new(values, scan.readings().len()).unwrap();
-        let options = BatchOptions::default();
         let mut observer = |_, _| ControlFlow::Continue(());
-        let found = intervals_of_many(scan.readings(), &options, scans, &mut observer).unwrap();
-        let alone =
-            intervals_of_many_on_one_thread(scan.readings(), &options, scans, &mut observer);
+        let found = intervals_of_many(scan.readings(), options, scans, &mut observer).unwrap();
+        let alone = intervals_of_many_on_one_thread(scan.readings(), options, scans, &mut observer);
         // NaN is equal to NaN in the text, which has all digits.
         assert_eq!(format!("{:?}", alone.unwrap()), format!("{found:?}"));
         found
@@ -218,17 +228,32 @@ mod tests {
 
     #[test]
     fn the_intervals_are_those_of_the_report() {
+        compare_with_reports(&BatchOptions::default(), &options());
+    }
+
+    #[test]
+    fn the_intervals_of_the_first_stage_are_those_of_its_report() {
+        let limit = 40_f64.to_radians();
+        let of_many = BatchOptions {
+            stage1_limit: Some(limit),
+            ..BatchOptions::default()
+        };
+        let of_one = FitOptions {
+            stage1_limit: limit,
+            stage2: None,
+            ..options()
+        };
+        compare_with_reports(&of_many, &of_one);
+    }
+
+    fn compare_with_reports(of_many: &BatchOptions, of_one: &FitOptions) {
         let scans = [[0.3, 0.1, 0.2], [0.1, 0.3, 0.5]].map(|at| rippled(at, 1.5, 0.02));
         let values = scans.iter().flat_map(Measurements::readings);
         let values: Vec<f64> = values.map(|reading| reading.brdf).collect();
-        let found = all(&values, &scans[0]);
+        let found = all(&values, &scans[0], of_many);
         for (i, scan) in scans.iter().enumerate() {
-            let options = FitOptions {
-                refractive_index: Some(RefractiveIndex::Same(1.5)),
-                ..FitOptions::default()
-            };
-            assert!(fit(scan, &options).is_ok());
-            let (report, _) = Report::new(scan, &options, Depth::Fit);
+            assert!(fit(scan, of_one).is_ok());
+            let (report, _) = Report::new(scan, of_one, Depth::Fit);
             for estimate in &report.uncertainty.unwrap().estimates {
                 let of_parameter =
                     |column: &&ParameterIntervals| column.parameter == estimate.parameter;
@@ -247,9 +272,9 @@ mod tests {
     fn scans_that_cannot_be_fitted_have_no_interval() {
         let scan = rippled([0.3, 0.1, 0.2], 1.5, 0.02);
         let count = scan.readings().len();
-        let found = all(&vec![0.0; count], &scan);
+        let found = all(&vec![0.0; count], &scan, &BatchOptions::default());
         assert!(found.iter().all(|column| column.standard_error[0].is_nan()));
-        let found = all(&vec![f64::NAN; count], &scan);
+        let found = all(&vec![f64::NAN; count], &scan, &BatchOptions::default());
         assert!(
             found
                 .iter()

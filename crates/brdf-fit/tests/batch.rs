@@ -425,6 +425,27 @@ fn weights_of_scans_are_those_of_repeated_readings() {
     assert!((fits.k1[0] / single.parameters.k1 - 1.0).abs() < 1e-6);
 }
 
+/// No width of the grid shows its lobe, of k2 = 6e-8.
+#[test]
+fn a_faint_lobe_between_two_widths_of_the_grid_is_found() {
+    let angles = hemisphere();
+    let options = BatchOptions {
+        n: N,
+        ..BatchOptions::default()
+    };
+    let plan = BatchPlan::new(&angles, &options).unwrap();
+    let readings = scan(2, 1929, Model::Three, &angles);
+    let scans = Scans::new(&readings, angles.len()).unwrap();
+    let batch = plan.fit_many(scans).unwrap();
+    let options = FitOptions {
+        refractive_index: Some(RefractiveIndex::Same(N)),
+        ..FitOptions::default()
+    };
+    let single = fit(&measurements(&angles, &readings), &options).unwrap();
+    assert!(batch.e_percent[0] <= single.e_percent * (1.0 + RELATIVE));
+    assert!(batch.k2[0] > 0.0);
+}
+
 #[test]
 fn the_first_stage_is_that_of_fit() {
     let angles = in_plane(0.7, 1);

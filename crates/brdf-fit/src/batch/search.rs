@@ -108,14 +108,14 @@ impl<'a> Search<'a> {
             self.starts(squares, to);
             return;
         }
-        self.follow(diffuse, coordinates, to);
+        self.follow(diffuse, beside, coordinates, to);
         let best = to.iter().map(|found| found.explained).fold(0.0, f64::max);
         let alike = |found: &Found| (ALIKE + 4.0 * table.cells[found.point].error) * squares;
         to.retain(|found| found.explained >= best - alike(found));
     }
 
     /// Follows the maxima of the grid along ln k1 that may lead to the largest one.
-    fn follow(&self, diffuse: f64, coordinates: &[f64], to: &mut Vec<Found>) {
+    fn follow(&self, diffuse: f64, beside: &[f64], coordinates: &[f64], to: &mut Vec<Found>) {
         let (table, explained) = (self.table, &self.explained);
         let largest = largest(explained);
         let gain = 0.25 * table.curvature * super::basis::norm(coordinates);
@@ -138,6 +138,25 @@ impl<'a> Search<'a> {
             at: table.grid.at(i),
             explained,
         }));
+        // Where no width of the grid shows a lobe, one between them may, however faint it is.
+        let plain = diffuse.max(0.0).powi(2);
+        if largest <= plain {
+            let is_faint = |&i: &usize| {
+                let beyond = |i: usize| beside.get(i).copied().unwrap_or(f64::NEG_INFINITY);
+                let highest = beyond(i.wrapping_sub(1)).max(beyond(i + 1));
+                beside[i] > -gain && beside[i] >= highest
+            };
+            let known = to.len();
+            for i in (0..beside.len()).filter(is_faint) {
+                if to[..known].iter().all(|found| found.point != i) {
+                    to.push(Found {
+                        point: i,
+                        at: table.grid.at(i),
+                        explained: plain,
+                    });
+                }
+            }
+        }
         if to.len() > MOST_MAXIMA {
             to.sort_by(|a, b| b.explained.total_cmp(&a.explained));
             to.truncate(MOST_MAXIMA);
@@ -210,7 +229,8 @@ fn largest(values: &[f64]) -> f64 {
 fn along(line: &Line, diffuse: f64, t: f64) -> [f64; 3] {
     let [beside, beside1, beside2] = line.beside.at(t);
     if beside <= 0.0 {
-        return [diffuse.max(0.0).powi(2), 0.0, 0.0];
+        // Without a lobe nothing changes: the way to one is upwards in the scalar product.
+        return [diffuse.max(0.0).powi(2), beside1, beside2];
     }
     let [cos, cos1, cos2] = line.cos.at(t);
     let [sin, sin1, sin2] = line.sin.at(t);

@@ -87,6 +87,13 @@ impl Canvas {
         self.document.polygon(corners, paint.into());
     }
 
+    /// A filled circle.
+    pub(super) fn disc(&mut self, centre: Point, radius: f64, paint: impl Into<Paint>) {
+        let radius = subdivided_width(radius);
+        self.document
+            .circle(coordinates(centre), radius, paint.into());
+    }
+
     /// The mark of a reading.
     pub(super) fn mark(&mut self, (x, y): Point, shape: MarkShape, colour: Rgb) {
         // Half the sizes with which the marks look equally large.
@@ -94,8 +101,7 @@ impl Canvas {
         let (diamond, triangle) = (3.4, 3.2);
         match shape {
             MarkShape::Circle => {
-                let (centre, radius) = (coordinates((x, y)), subdivided_width(2.7));
-                self.document.circle(centre, radius, colour.into());
+                self.disc((x, y), 2.7, colour);
             }
             MarkShape::Square => self.rectangle((x, y), (square, square), colour),
             MarkShape::Diamond => self.area(

@@ -51,7 +51,10 @@ mod write;
 pub use curves::{Curve, Reading, Theory, curves, theory_curves, value_range};
 pub use error::PlotError;
 pub use figure::Figure;
-pub use figures::{Layer, TradePoint, figure_of, figures, paper_figures, trade_picture};
+pub use figures::{
+    DRAWING_AREA, FIGURE_SIZE, Layer, Shape, TradePoint, drawing, figure_of, figures,
+    paper_figures, trade_picture,
+};
 pub use folder::{FolderError, PAGE, figure_files, report_figures, write_folder};
 pub use palette::{FAMILIES, Ground, MarkShape, colour, family_colour, mark};
 pub use selection::{Selection, Trace};

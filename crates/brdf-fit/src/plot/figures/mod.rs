@@ -1,6 +1,7 @@
 //! The figures, a file for each of them, and all figures of a fit.
 
 mod arrangement;
+mod drawing;
 mod paper;
 mod polar;
 mod profile;
@@ -20,6 +21,7 @@ use crate::plot::view::View;
 use crate::scan::Measurements;
 
 pub use arrangement::{Layer, figure_of};
+pub use drawing::{DRAWING_AREA, FIGURE_SIZE, Shape, drawing};
 pub use paper::paper_figures;
 pub use tradeoff::{TradePoint, trade_picture};
 

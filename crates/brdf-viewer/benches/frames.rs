@@ -33,7 +33,12 @@ fn large() -> String {
 
 /// A window with a sample.
 fn window(sample: Intent) -> (OffscreenWindow, Viewer) {
-    let mut window = OffscreenWindow::new([1280.0, 800.0], 1.0);
+    window_of([1280.0, 800.0], sample)
+}
+
+/// A window of a size in points with a sample.
+fn window_of(size: [f32; 2], sample: Intent) -> (OffscreenWindow, Viewer) {
+    let mut window = OffscreenWindow::new(size, 1.0);
     let mut viewer = Viewer::new(
         window.context(),
         Box::new(NativeDialogs),
@@ -158,5 +163,52 @@ fn while_fitting(_: &mut Criterion) {
     );
 }
 
-criterion_group!(benches, while_fitting, frames);
+/// Readings at the wavelengths of red, green and blue.
+fn colourful() -> String {
+    let mut text = "wavelength_um,psi_deg,theta_deg,brdf_per_sr\n".to_owned();
+    for (um, diffuse) in [(0.46, 0.05), (0.55, 0.1), (0.61, 0.2)] {
+        for psi in [10, 30, 50, 70] {
+            for j in 0..33 {
+                let theta = -80 + 5 * j;
+                let away = f64::from(theta + psi).to_radians();
+                let brdf = diffuse + 0.2 * (-8.0 * away * away).exp();
+                let _ = writeln!(text, "{um},{psi},{theta},{brdf:.6}");
+            }
+        }
+    }
+    text
+}
+
+/// The lobe, and the surface at 512 x 512 pixels, in a large window.
+fn solids(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("frame at 1920x1400");
+    let colours = Intent::OpenBytes("colourful.csv".to_owned(), colourful().into_bytes());
+    for (name, sample) in [("grey", Intent::OpenBuiltIn(0)), ("in colour", colours)] {
+        let (mut window, mut viewer) = window_of([1920.0, 1400.0], sample);
+        viewer.state.interface.results = false;
+        let mut time = |viewer: &mut Viewer, what: &str| {
+            // The first frames find the size of the pictures.
+            for _ in 0..3 {
+                window.frame_and_triangles(viewer);
+            }
+            let side = viewer.state.surface_side;
+            group.bench_function(format!("{what}, k1 dragged"), |bench| {
+                bench.iter(|| {
+                    drag_k1(viewer);
+                    black_box(window.frame_and_triangles(viewer))
+                });
+            });
+            side
+        };
+        let command = |viewer: &mut Viewer, command| viewer.state.apply(Intent::Command(command));
+        time(&mut viewer, &format!("plot, {name}"));
+        command(&mut viewer, Command::Lobe);
+        time(&mut viewer, &format!("lobe, {name}"));
+        command(&mut viewer, Command::Surface);
+        let side = time(&mut viewer, &format!("surface, {name}"));
+        assert_eq!(side, 512);
+    }
+}
+
+criterion_group!(benches, while_fitting, frames, solids);
 criterion_main!(benches);

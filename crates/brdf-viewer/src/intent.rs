@@ -12,6 +12,7 @@ use crate::state::fit_settings::{FitSettings, Scope, Stages};
 use crate::state::id::{SampleId, ScanId};
 use crate::state::interface::{ResidualKind, ResultTab};
 use crate::state::parameters::EditedParameters;
+use crate::state::solid::SolidView;
 
 /// A request of the user, which `State::apply` carries out.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +64,10 @@ pub enum Intent {
     Convention(Convention),
     /// Change the view of the data.
     View(View),
+    /// Change the settings of the lobe and of the surface.
+    Solid(SolidView),
+    /// Set the number of pixels along the picture of a surface.
+    SurfaceSide(usize),
     /// Set the number of columns of readings that fit into the plot.
     PlotColumns(usize),
     /// Set the parameters of the active scan.
@@ -148,6 +153,10 @@ pub enum Command {
     Panels,
     /// Show the polar plot.
     Polar,
+    /// Show the lobe of an incidence in three dimensions.
+    Lobe,
+    /// Show the surface under light.
+    Surface,
     /// Reset the zoom of all plots.
     ResetZoom,
     /// Toggle the samples panel.

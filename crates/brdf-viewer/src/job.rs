@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use brdf_fit::Convention;
 use brdf_fit::Step;
-use brdf_fit::plot::View;
+use brdf_fit::plot::{Ground, View};
 use brdf_fit::read::LazyScan;
 use brdf_fit::report::{Depth, Report};
 use brdf_fit::{FitOptions, Measurements};
@@ -15,6 +15,8 @@ use egui::ColorImage;
 
 use crate::cancel::CancelFlag;
 use crate::output_kind::{FigureFormat, OutputKind};
+use crate::solid::surface::Composition;
+use crate::solid::{Camera, LobeScene};
 use crate::state::id::{SampleId, ScanId};
 use crate::state::parameters::EditedParameters;
 use crate::state::sample::{Opened, Sample, Scan};
@@ -37,7 +39,7 @@ pub enum FileJob {
     /// Read a scan from the content of a file: its name, its bytes and its angular convention.
     OpenBytes(String, Vec<u8>, Convention),
     /// Draw a figure for the clipboard.
-    Draw(Vec<FigureLayer>, View),
+    Draw(Drawing),
     /// Write a file.
     Write(PathBuf, Output),
 }
@@ -73,12 +75,38 @@ pub struct FitJob {
 /// The data of a file that is written.
 #[derive(Debug)]
 pub enum Output {
-    /// A figure of samples.
-    Figure(FigureFormat, Vec<FigureLayer>, View),
+    /// A figure.
+    Figure(FigureFormat, Drawing),
+    /// The mesh of a lobe.
+    Mesh(Box<LobeDrawing>),
     /// Readings and theory; without readings, the theory at incidence angles in radians.
     Curves(Arc<Measurements>, EditedParameters, Vec<f64>),
     /// The fits of samples.
     Fit(Vec<Arc<Report>>, Vec<SampleId>),
+}
+
+/// What a figure shows.
+#[derive(Debug)]
+pub enum Drawing {
+    /// Curves and readings of samples.
+    Curves(Vec<FigureLayer>, View),
+    /// The lobe of an incidence.
+    Lobe(Box<LobeDrawing>),
+    /// Surfaces under light.
+    Surface(Composition),
+}
+
+/// The data of a lobe that a figure or a mesh shows.
+#[derive(Debug, Clone)]
+pub struct LobeDrawing {
+    /// The lobe with its readings.
+    pub scene: LobeScene,
+    /// Where it is looked at from.
+    pub camera: Camera,
+    /// Two lines of title.
+    pub title: [String; 2],
+    /// The ground of the figure.
+    pub ground: Ground,
 }
 
 /// The data of a sample that a figure shows.

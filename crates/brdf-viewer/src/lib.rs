@@ -13,12 +13,13 @@
 //!   change, in [`state::derived`].
 //! - [`panels`] draw the state, one panel per file, and answer with intents; [`plot`] is the
 //!   central one. [`theme`] and `widgets` are shared by all of them.
+//! - [`solid`] draws the lobe and the surface in three dimensions, by pure functions of the theory.
 //! - [`worker`] opens files, fits and writes files on its own threads, by calling `brdf_fit`, and
 //!   answers with events. [`job`] defines the types of both directions.
 //! - [`app`] runs a frame: it takes events, applies intents, draws panels and starts jobs.
 //!
 //! The modules form layers without cycles. From the bottom: [`cancel`], [`output_kind`] and the
-//! types of [`state`]; [`intent`] and [`job`]; [`state::State`]; [`worker`], [`plot`], [`panels`];
+//! types of [`state`], with [`solid`] and the leaves [`plot::ticks`] and [`plot::radius`]; [`intent`] and [`job`]; [`state::State`]; [`worker`], [`plot`], [`panels`];
 //! [`app`].
 //!
 //! The viewer contains no formula of the model: curves, errors and reflectances come from
@@ -42,6 +43,7 @@ pub mod plot;
 pub mod raster;
 pub mod screenshot;
 pub mod shortcuts;
+pub mod solid;
 pub mod state;
 pub mod theme;
 mod widgets;

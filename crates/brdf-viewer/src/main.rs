@@ -98,6 +98,8 @@ enum Arrangement {
     Together,
     Panels,
     Polar,
+    Lobe,
+    Surface,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -263,6 +265,8 @@ fn set_view(viewer: &mut Viewer, arguments: &Arguments) {
         Some(Arrangement::Together) => Some(Command::Together),
         Some(Arrangement::Panels) => Some(Command::Panels),
         Some(Arrangement::Polar) => Some(Command::Polar),
+        Some(Arrangement::Lobe) => Some(Command::Lobe),
+        Some(Arrangement::Surface) => Some(Command::Surface),
         None => None,
     };
     let toggles = [
@@ -271,7 +275,11 @@ fn set_view(viewer: &mut Viewer, arguments: &Arguments) {
         (arguments.residuals, Command::Residuals),
     ];
     let toggles = toggles.into_iter().filter(|(on, _)| *on);
-    for command in toggles.map(|(_, command)| command).chain(layout) {
+    // The axes are those of what is shown.
+    for command in layout
+        .into_iter()
+        .chain(toggles.map(|(_, command)| command))
+    {
         if state.is_on(command) == Some(false) {
             state.apply(Intent::Command(command));
         }

@@ -5,6 +5,8 @@
 pub enum OutputKind {
     /// The figure, for print.
     Figure(FigureFormat),
+    /// The lobe as a mesh for other programs.
+    Mesh,
     /// Theory and readings.
     Curves,
     /// The fits, in the format that `fit --again` and the viewer read.
@@ -26,6 +28,7 @@ impl OutputKind {
         match self {
             Self::Figure(FigureFormat::Svg) => "svg",
             Self::Figure(FigureFormat::Png) => "png",
+            Self::Mesh => "obj",
             Self::Curves => "csv",
             Self::Fit => "json",
         }
@@ -36,6 +39,7 @@ impl OutputKind {
         match self {
             Self::Figure(FigureFormat::Svg) => "figure as SVG",
             Self::Figure(FigureFormat::Png) => "figure as PNG",
+            Self::Mesh => "lobe as OBJ",
             Self::Curves => "theory and readings as CSV",
             Self::Fit => "fit as JSON",
         }

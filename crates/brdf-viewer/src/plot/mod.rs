@@ -8,8 +8,12 @@ pub mod context;
 mod hover;
 pub mod items;
 mod limits;
+mod lobe;
 mod navigation;
 mod polar;
+pub mod radius;
+mod solid_toolbar;
+mod surface;
 pub mod ticks;
 mod toolbar;
 
@@ -19,6 +23,7 @@ use egui::{CentralPanel, Ui, Vec2};
 use crate::intent::Intent;
 use crate::state::State;
 use crate::state::id::SampleId;
+use crate::state::solid::Solid;
 use crate::theme;
 use context::{DrawnCurve, PlotContext};
 
@@ -45,6 +50,11 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         if state.visible().next().is_none() {
             show_hint(ui, state);
             return;
+        }
+        match state.solid.shown {
+            Some(Solid::Lobe) => return lobe::show(ui, state, intents),
+            Some(Solid::Surface) => return surface::show(ui, state, intents),
+            None => {}
         }
         let curves = drawn_curves(ui, state);
         let context = PlotContext::new(state, &curves);

@@ -1,6 +1,6 @@
 //! The polar plot of the paper's figures: f_r as radius at the view angle.
 
-use brdf_fit::plot::{Reading, Scale, Theory, View};
+use brdf_fit::plot::{Reading, Theory, View};
 use egui::{Align2, Shape, Stroke, Ui, Vec2};
 use egui_plot::{Plot, PlotPoint, PlotTransform, Text};
 
@@ -11,82 +11,7 @@ use super::context::{DrawnCurve, PlotContext};
 use super::hover::show_values;
 use super::items::{self, Drawing};
 use super::navigation::navigate;
-use super::ticks::{linear_label, logarithmic_label, round_up};
-
-/// The largest number of circles. There are at least three, except for the smallest numbers.
-const MOST_CIRCLES: f64 = 5.0;
-
-/// How values are distances from the centre.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Radius {
-    /// In proportion, up to the outermost circle, with a circle at each step.
-    Linear { outermost: f64, step: f64 },
-    /// By their logarithm: the exponents of ten at the centre and at the outermost circle.
-    Logarithmic { centre: f64, outermost: f64 },
-}
-
-impl Radius {
-    /// The radius for values in a range.
-    fn new((least, most): (f64, f64), scale: Scale) -> Self {
-        match scale {
-            Scale::Linear => {
-                let (outermost, step) = circles(most);
-                Self::Linear { outermost, step }
-            }
-            Scale::Logarithmic => {
-                let outermost = most.log10().ceil();
-                Self::Logarithmic {
-                    centre: least.log10().floor().min(outermost - 1.0),
-                    outermost,
-                }
-            }
-        }
-    }
-
-    /// The distance of a value from the centre; `None` where it has none. On a logarithmic axis, values
-    /// below that of the centre are at the centre.
-    fn of(self, value: f64) -> Option<f64> {
-        match self {
-            Self::Linear { .. } => (value >= 0.0).then_some(value),
-            Self::Logarithmic { centre, .. } => {
-                (value > 0.0).then(|| (value.log10() - centre).max(0.0))
-            }
-        }
-    }
-
-    /// The distance of the outermost circle.
-    fn outermost(self) -> f64 {
-        match self {
-            Self::Linear { outermost, .. } => outermost,
-            Self::Logarithmic { centre, outermost } => outermost - centre,
-        }
-    }
-
-    /// The values of the circles, with their labels.
-    fn circles(self) -> Vec<(f64, String)> {
-        match self {
-            Self::Linear { outermost, step } => {
-                let values = values(outermost, step);
-                values
-                    .map(|value| (value, linear_label(value, step)))
-                    .collect()
-            }
-            Self::Logarithmic { centre, outermost } => {
-                let decades = (outermost - centre) as u32;
-                let value = |i: u32| 10_f64.powf(centre + f64::from(i));
-                let values = (1..=decades).map(value);
-                values
-                    .map(|value| (value, logarithmic_label(value)))
-                    .collect()
-            }
-        }
-    }
-
-    /// The position of a value at a view angle in degrees; `None` if it has no radius.
-    fn position(self, theta_deg: f64, value: f64) -> Option<[f64; 2]> {
-        Some(position(theta_deg, self.of(value)?))
-    }
-}
+use super::radius::Radius;
 
 /// The position at a view angle in degrees and a distance from the centre. The normal points upwards,
 /// and positive angles to the right.
@@ -95,10 +20,9 @@ fn position(theta_deg: f64, distance: f64) -> [f64; 2] {
     [distance * theta.sin(), distance * theta.cos()]
 }
 
-/// The radius of the outermost circle, and the step from circle to circle.
-fn circles(largest: f64) -> (f64, f64) {
-    let step = round_up(if largest > 0.0 { largest } else { 1.0 } / MOST_CIRCLES);
-    ((largest / step).ceil().max(1.0) * step, step)
+/// The position of a value at a view angle in degrees; `None` if it has no radius.
+fn place(radius: Radius, theta_deg: f64, value: f64) -> Option<[f64; 2]> {
+    Some(position(theta_deg, radius.of(value)?))
 }
 
 /// Draws the polar plot.
@@ -132,9 +56,9 @@ pub(super) fn show(ui: &mut Ui, context: &PlotContext) {
         }
     });
     show_values(&response, view, &curves, |theta_deg, value| {
-        radius.position(theta_deg, value)
+        place(radius, theta_deg, value)
     });
-    let of_reading = |reading: &Reading| radius.position(reading.theta_deg, reading.value);
+    let of_reading = |reading: &Reading| place(radius, reading.theta_deg, reading.value);
     choose(context, &response, &curves, of_reading);
     describe(&response, "BRDF plot", &curves);
 }
@@ -175,9 +99,9 @@ fn draw(
     for reading in &curve.readings {
         items::error_bar(transform, error_bar(reading, radius), colour, shapes);
     }
-    let at = |reading: &Reading| radius.position(reading.theta_deg, reading.value);
+    let at = |reading: &Reading| place(radius, reading.theta_deg, reading.value);
     items::used_and_left_out(transform, drawn, at, shapes);
-    let theory = |theory: &Theory| radius.position(theory.theta_deg, theory.value);
+    let theory = |theory: &Theory| place(radius, theory.theta_deg, theory.value);
     let points = curve.theory.iter().map(|of| {
         let at = theory(of);
         at.map_or((f64::NAN, f64::NAN), |[x, y]| (x, y))
@@ -200,7 +124,7 @@ fn error_bar(reading: &Reading, radius: Radius) -> Option<[[f64; 2]; 2]> {
 }
 
 fn ends(theta_deg: f64, value: f64, sigma: f64, radius: Radius) -> Option<[[f64; 2]; 2]> {
-    let high = radius.position(theta_deg, value + sigma)?;
+    let high = place(radius, theta_deg, value + sigma)?;
     let low = radius.of(value - sigma).unwrap_or(0.0);
     Some([position(theta_deg, low), high])
 }
@@ -222,12 +146,6 @@ fn grid(transform: &PlotTransform, radius: Radius, stroke: Stroke, shapes: &mut 
     }
 }
 
-/// The values of the circles.
-fn values(radius: f64, step: f64) -> impl Iterator<Item = f64> {
-    let count = (radius / step).round() as u32;
-    (1..=count).map(move |i| f64::from(i) * step)
-}
-
 /// The labels of the grid and the name of the quantity: identifiers, positions and texts.
 fn labels(radius: Radius, view: &View) -> Vec<(String, [f64; 2], String)> {
     let outermost = radius.outermost();
@@ -243,32 +161,4 @@ fn labels(radius: Radius, view: &View) -> Vec<(String, [f64; 2], String)> {
     let name = view.quantity.axis_name().to_owned();
     let name = ("name".to_owned(), [0.0, -0.11 * outermost], name);
     angles.chain(radii).chain([name]).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_largest_value_uses_most_of_the_radius() {
-        for largest in [0.021, 0.1, 0.21, 0.33, 0.51, 0.9, 1.01, 7e-5, 3e4] {
-            let (radius, step) = circles(largest);
-            assert!(
-                largest <= radius * (1.0 + 1e-12) && largest > 0.66 * radius,
-                "{largest}"
-            );
-            assert!((2..=5).contains(&values(radius, step).count()), "{largest}");
-        }
-        assert_eq!(circles(0.0).1, 0.2);
-    }
-
-    #[test]
-    fn a_logarithmic_radius_has_a_circle_for_each_decade() {
-        let radius = Radius::new((0.004, 0.7), Scale::Logarithmic);
-        assert_eq!(radius.outermost(), 3.0);
-        assert_eq!(radius.circles().len(), 3);
-        assert!((radius.of(0.1).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(radius.of(1e-9), Some(0.0));
-        assert_eq!(radius.of(0.0), None);
-    }
 }

@@ -6,9 +6,11 @@ use brdf_fit::plot::{Layout, Scale};
 use egui::{Button, Checkbox, ComboBox, Shape, Stroke, Ui, vec2};
 
 use super::items::dashes;
+use super::solid_toolbar;
 use crate::intent::{Command, Intent};
 use crate::state::State;
 use crate::state::interface::ResidualKind;
+use crate::state::solid::Solid;
 use crate::widgets::{choose, degrees, named};
 
 /// Draws the toolbar, and below it a note on readings that are not shown.
@@ -18,21 +20,32 @@ pub(super) fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         ui.spacing_mut().item_spacing.x = 4.0;
         ui.spacing_mut().button_padding.x = 3.0;
         show_layouts(ui, state, intents);
-        show_options(ui, state, intents);
-        show_residuals(ui, state, intents);
-        show_side(ui, state, intents);
-        show_planes(ui, state, intents);
-        show_choosing(ui, state, intents);
-        show_limits(ui, state, intents);
+        match state.solid.shown {
+            None => show_curve_controls(ui, state, intents),
+            Some(Solid::Lobe) => solid_toolbar::show_lobe(ui, state, intents),
+            Some(Solid::Surface) => solid_toolbar::show_surface(ui, state, intents),
+        }
         if ui.button("Reset zoom").clicked() {
             intents.push(Intent::Command(Command::ResetZoom));
         }
     });
+    if state.solid.shown == Some(Solid::Surface) {
+        return;
+    }
     show_ghosts(ui, state, intents);
     let note = not_shown(state);
-    if !note.is_empty() {
+    if !note.is_empty() && state.solid.shown.is_none() {
         ui.weak(note);
     }
+}
+
+fn show_curve_controls(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
+    show_options(ui, state, intents);
+    show_residuals(ui, state, intents);
+    show_side(ui, state, intents);
+    show_planes(ui, state, intents);
+    show_choosing(ui, state, intents);
+    show_limits(ui, state, intents);
 }
 
 fn show_layouts(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
@@ -40,6 +53,8 @@ fn show_layouts(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         (Command::Together, "Together"),
         (Command::Panels, "Panels"),
         (Command::Polar, "Polar"),
+        (Command::Lobe, "Lobe"),
+        (Command::Surface, "Surface"),
     ] {
         let on = state.is_on(command) == Some(true);
         let label = ui.selectable_label(on, name);

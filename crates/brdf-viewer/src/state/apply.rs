@@ -48,7 +48,7 @@ impl State {
             Intent::ToggleModel(model) => self.toggle_model(model),
             Intent::Unpin(i) => {
                 if i < self.ghosts.len() {
-                    self.ghosts.remove(i);
+                    self.remove_ghost(i);
                 }
             }
             Intent::PlotParameter(parameter) => self.interface.parameter = parameter,
@@ -56,6 +56,8 @@ impl State {
             Intent::UseModel(model) => self.take_model(model),
             Intent::Convention(convention) => self.convention = convention,
             Intent::View(view) => self.view = view,
+            Intent::Solid(solid) => self.solid = solid,
+            Intent::SurfaceSide(side) => self.surface_side = side,
             Intent::PlotColumns(columns) => self.columns = columns,
             Intent::SetParameters(parameters) => self.set_parameters(parameters),
             Intent::Model(model, scope) => self.set_model(model, scope),

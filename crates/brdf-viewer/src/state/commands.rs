@@ -6,9 +6,10 @@ use super::fit_settings::{Scope, Stages};
 use super::id::SampleId;
 use super::interface::Dialog;
 use super::sample::Sample;
+use super::solid::{Solid, SolidView};
 use super::{Effect, State};
 use crate::intent::Command;
-use crate::output_kind::OutputKind;
+use crate::output_kind::{FigureFormat, OutputKind};
 
 impl State {
     pub(super) fn command(&mut self, command: Command) {
@@ -51,22 +52,26 @@ impl State {
     fn change_view(&mut self, command: Command) {
         match command {
             Command::Logarithmic => {
-                self.view.scale = match self.view.scale {
+                let scale = self.shown_scale();
+                *scale = match scale {
                     Scale::Linear => Scale::Logarithmic,
                     Scale::Logarithmic => Scale::Linear,
                 }
             }
             Command::TimesCosine => {
-                self.view.quantity = match self.view.quantity {
+                let quantity = self.shown_quantity();
+                *quantity = match quantity {
                     Quantity::Brdf => Quantity::BrdfCosine,
                     Quantity::BrdfCosine => Quantity::Brdf,
                 }
             }
             Command::Residuals => self.view.residuals ^= true,
-            Command::Together => self.view.layout = Layout::Together,
-            Command::Panels => self.view.layout = Layout::Panels,
-            Command::Polar => self.view.layout = Layout::Polar,
-            Command::ResetZoom => self.zoom_resets += 1,
+            Command::Together => self.show_curves(Layout::Together),
+            Command::Panels => self.show_curves(Layout::Panels),
+            Command::Polar => self.show_curves(Layout::Polar),
+            Command::Lobe => self.solid.shown = Some(Solid::Lobe),
+            Command::Surface => self.solid.shown = Some(Solid::Surface),
+            Command::ResetZoom => self.reset_zoom(),
             Command::Samples => self.interface.samples ^= true,
             Command::Parameters => self.interface.parameters ^= true,
             Command::Results => self.interface.results ^= true,
@@ -78,10 +83,43 @@ impl State {
         }
     }
 
+    fn show_curves(&mut self, layout: Layout) {
+        self.view.layout = layout;
+        self.solid.shown = None;
+    }
+
+    /// Shows all of the plots, and the lobe and the surface as at first.
+    fn reset_zoom(&mut self) {
+        self.zoom_resets += 1;
+        let initial = SolidView::default();
+        match self.solid.shown {
+            Some(Solid::Lobe) => self.solid.camera = initial.camera,
+            Some(Solid::Surface) => self.solid.lamp_deg = initial.lamp_deg,
+            None => {}
+        }
+    }
+
+    /// The axis of what is shown.
+    fn shown_scale(&mut self) -> &mut Scale {
+        match self.solid.shown {
+            Some(_) => &mut self.solid.scale,
+            None => &mut self.view.scale,
+        }
+    }
+
+    /// The quantity of what is shown.
+    fn shown_quantity(&mut self) -> &mut Quantity {
+        match self.solid.shown {
+            Some(_) => &mut self.solid.quantity,
+            None => &mut self.view.quantity,
+        }
+    }
+
     /// Whether a command is enabled.
     pub fn is_enabled(&self, command: Command) -> bool {
         let active = self.active_sample();
         let scan = active.map(Sample::scan);
+        let shown = self.solid.shown;
         match command {
             Command::Close
             | Command::CopyParameters
@@ -89,9 +127,13 @@ impl State {
             | Command::Export(OutputKind::Curves) => active.is_some(),
             Command::UnpinAll => !self.ghosts.is_empty(),
             Command::CloseAll => !self.samples.is_empty(),
-            Command::CopyFigure | Command::Export(OutputKind::Figure(_)) => {
-                self.visible().next().is_some()
+            // The surface consists of pixels.
+            Command::Export(OutputKind::Figure(FigureFormat::Svg)) => {
+                self.has_figure() && shown != Some(Solid::Surface)
             }
+            Command::CopyFigure | Command::Export(OutputKind::Figure(_)) => self.has_figure(),
+            Command::Export(OutputKind::Mesh) => self.derived_solid.lobe().is_some(),
+            Command::Logarithmic | Command::TimesCosine => shown != Some(Solid::Surface),
             Command::Export(OutputKind::Fit) => active.is_some_and(Sample::is_fitted),
             Command::Undo => self.history.can_undo(),
             Command::Redo => self.history.can_redo(),
@@ -105,21 +147,27 @@ impl State {
                 !self.is_fitting_on_request() && !self.scans_to_fit(Scope::All).is_empty()
             }
             Command::Cancel => self.is_fitting(),
-            Command::Residuals => self.view.layout != Layout::Polar,
-            Command::Limits => self.view.layout == Layout::Together,
+            Command::Residuals => shown.is_none() && self.view.layout != Layout::Polar,
+            Command::Limits => shown.is_none() && self.view.layout == Layout::Together,
             _ => true,
         }
     }
 
     /// Whether the option that a command controls is on; `None` if it controls none.
     pub fn is_on(&self, command: Command) -> Option<bool> {
+        let (scale, quantity, layout) = match self.solid.shown {
+            Some(_) => (self.solid.scale, self.solid.quantity, None),
+            None => (self.view.scale, self.view.quantity, Some(self.view.layout)),
+        };
         Some(match command {
-            Command::Logarithmic => self.view.scale == Scale::Logarithmic,
-            Command::TimesCosine => self.view.quantity == Quantity::BrdfCosine,
+            Command::Logarithmic => scale == Scale::Logarithmic,
+            Command::TimesCosine => quantity == Quantity::BrdfCosine,
             Command::Residuals => self.view.residuals,
-            Command::Together => self.view.layout == Layout::Together,
-            Command::Panels => self.view.layout == Layout::Panels,
-            Command::Polar => self.view.layout == Layout::Polar,
+            Command::Together => layout == Some(Layout::Together),
+            Command::Panels => layout == Some(Layout::Panels),
+            Command::Polar => layout == Some(Layout::Polar),
+            Command::Lobe => self.solid.shown == Some(Solid::Lobe),
+            Command::Surface => self.solid.shown == Some(Solid::Surface),
             Command::ChooseReadings => self.choosing,
             Command::Limits => self.interface.limits,
             Command::Samples => self.interface.samples,
@@ -129,6 +177,14 @@ impl State {
             Command::SystemTheme => self.interface.dark.is_none(),
             _ => return None,
         })
+    }
+
+    /// Whether there is anything to draw in a figure.
+    fn has_figure(&self) -> bool {
+        match self.solid.shown {
+            None => self.visible().next().is_some(),
+            Some(_) => self.subject().is_some(),
+        }
     }
 
     /// Whether the theme is dark, by the choice of the user or else of the system.

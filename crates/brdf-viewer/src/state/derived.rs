@@ -25,13 +25,12 @@ use super::sample::{Sample, Scan};
 
 /// A value with the key from which it was computed.
 #[derive(Debug, Clone)]
-struct Cached<K, V>(Option<(K, V)>);
+pub(super) struct Cached<K, V>(Option<(K, V)>);
 
 impl<K: PartialEq, V> Cached<K, V> {
     /// The value for a key, computed unless the cached one has this key.
-    fn get(&mut self, key: K, compute: impl FnOnce(&K) -> V) -> &V {
-        let is_valid = self.0.as_ref().is_some_and(|(cached, _)| *cached == key);
-        if !is_valid {
+    pub(super) fn get(&mut self, key: K, compute: impl FnOnce(&K) -> V) -> &V {
+        if !self.has(&key) {
             self.0 = None;
         }
         let (_, value) = self.0.get_or_insert_with(|| {
@@ -41,7 +40,13 @@ impl<K: PartialEq, V> Cached<K, V> {
         value
     }
 
-    fn last(&self) -> Option<&V> {
+    /// Whether the cached value is that of a key.
+    pub(super) fn has(&self, key: &K) -> bool {
+        self.0.as_ref().is_some_and(|(cached, _)| cached == key)
+    }
+
+    /// The cached value.
+    pub(super) fn last(&self) -> Option<&V> {
         self.0.as_ref().map(|(_, value)| value)
     }
 }

@@ -8,8 +8,9 @@ use brdf_fit::plot::{Ground, Layout, View};
 
 use super::interface::Dialog;
 use super::sample::Sample;
+use super::solid::Solid;
 use super::{Effect, State};
-use crate::job::{FigureLayer, FileJob, Job, Output};
+use crate::job::{Drawing, FigureLayer, FileJob, Job, LobeDrawing, Output};
 use crate::output_kind::OutputKind;
 
 /// Why a file is not written.
@@ -44,6 +45,8 @@ enum ExportError {
     Extension(PathBuf, OutputKind),
     #[error("no sample is open")]
     NoSample,
+    #[error("no lobe is shown: expected Lobe above the plot, and parameters in their domain")]
+    NoLobe,
     #[error("the figure would be empty: no incidence is selected")]
     EmptyFigure,
 }
@@ -171,19 +174,39 @@ impl State {
         View {
             // Panels show all, because each may show another part.
             zoom: self.zoom.filter(|_| self.view.layout == Layout::Together),
-            ground: if self.is_dark() {
-                Ground::Dark
-            } else {
-                Ground::Light
-            },
+            ground: self.ground(),
             ..self.view
         }
     }
 
+    pub(super) fn ground(&self) -> Ground {
+        if self.is_dark() {
+            Ground::Dark
+        } else {
+            Ground::Light
+        }
+    }
+
+    /// What a figure shows.
+    fn drawing(&self) -> Result<Drawing, ExportError> {
+        Ok(match self.solid.shown {
+            None => Drawing::Curves(self.layers()?, self.view_of_figure()),
+            Some(Solid::Lobe) => Drawing::Lobe(Box::new(self.lobe_drawing()?)),
+            Some(Solid::Surface) => {
+                let drawing = self.surface_drawing();
+                Drawing::Surface(drawing.ok_or(ExportError::NoSample)?)
+            }
+        })
+    }
+
+    fn lobe_drawing(&self) -> Result<LobeDrawing, ExportError> {
+        self.drawn_lobe().ok_or(ExportError::NoLobe)
+    }
+
     /// Copies the figure to the clipboard.
     pub(super) fn copy_figure(&mut self) {
-        match self.layers() {
-            Ok(layers) => self.start(Job::File(FileJob::Draw(layers, self.view_of_figure()))),
+        match self.drawing() {
+            Ok(drawing) => self.start(Job::File(FileJob::Draw(drawing))),
             Err(error) => self.report_error(error.to_string()),
         }
     }
@@ -191,9 +214,8 @@ impl State {
     fn output(&self, kind: OutputKind, path: &Path) -> Result<Output, ExportError> {
         let sample = self.active_sample().ok_or(ExportError::NoSample)?;
         Ok(match kind {
-            OutputKind::Figure(format) => {
-                Output::Figure(format, self.layers()?, self.view_of_figure())
-            }
+            OutputKind::Figure(format) => Output::Figure(format, self.drawing()?),
+            OutputKind::Mesh => Output::Mesh(Box::new(self.lobe_drawing()?)),
             OutputKind::Curves => {
                 let scan = sample.scan();
                 let psi = scan.incidences.iter().map(|incidence| incidence.psi);

@@ -6,6 +6,7 @@ use super::State;
 use super::id::{SampleId, ScanId};
 use super::parameters::EditedParameters;
 use super::sample::Scan;
+use super::solid::Beside;
 
 /// A theory that stays in the plot, at the incidences of its sample.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,6 +70,15 @@ impl State {
             parameters: EditedParameters::new(model, candidate.parameters),
         };
         self.ghosts.push(ghost);
+    }
+
+    /// Removes a ghost, by its index.
+    pub(super) fn remove_ghost(&mut self, index: usize) {
+        self.ghosts.remove(index);
+        // The others have other indices now.
+        if matches!(self.solid.beside, Beside::Ghost(_)) {
+            self.solid.beside = Beside::Automatic;
+        }
     }
 
     /// Whether a model of the comparison of the active scan is shown.

@@ -25,6 +25,7 @@ mod parameter_table;
 pub mod parameters;
 pub mod sample;
 pub mod saved;
+pub mod solid;
 
 use std::path::PathBuf;
 
@@ -45,9 +46,14 @@ use id::{SampleId, ScanId};
 use interface::{Dialog, Interface, Message, Severity};
 use sample::{Sample, Scan};
 use saved::{Reopened, Saved};
+use solid::SolidView;
+use solid::derived::DerivedSolid;
 
 /// The largest number of messages. Older ones are removed.
 const MOST_MESSAGES: usize = 20;
+
+/// The number of pixels along the picture of a surface until its place is known.
+const SURFACE_SIDE: usize = 256;
 
 /// An action that a change of the state requests of the application.
 #[derive(Debug)]
@@ -88,6 +94,10 @@ pub struct State {
     pub active: Option<SampleId>,
     /// The view of the data.
     pub view: View,
+    /// The settings of the lobe and of the surface.
+    pub solid: SolidView,
+    /// The number of pixels along the picture of a surface.
+    pub surface_side: usize,
     /// The number of columns of readings that fit into the plot.
     pub columns: usize,
     /// The theme and the visible panels.
@@ -125,6 +135,8 @@ pub struct State {
     pub files_being_read: usize,
     /// The values derived from the data, the view and the parameters.
     pub derived: Derived,
+    /// The lobe and the pictures of the surface.
+    pub derived_solid: DerivedSolid,
     effects: Vec<Effect>,
     next_id: u64,
     /// The number of the next run of fits.
@@ -144,6 +156,8 @@ impl State {
             convention: saved.convention,
             fit_settings: saved.fit_settings.clone(),
             recent: saved.recent.clone(),
+            solid: saved.solid,
+            surface_side: SURFACE_SIDE,
             columns: 400,
             ..Self::default()
         }
@@ -153,6 +167,7 @@ impl State {
     pub fn saved(&self, window: [f32; 2]) -> Saved {
         Saved {
             view: self.view,
+            solid: self.solid,
             interface: self.interface.clone(),
             convention: self.convention,
             fit_settings: self.fit_settings.clone(),
@@ -175,6 +190,7 @@ impl State {
             .refresh(&self.samples, self.active, view, self.columns, settings);
         self.derived
             .refresh_ghosts(&self.ghosts, &self.samples, view);
+        self.refresh_solid();
     }
 
     /// The active sample.

@@ -13,6 +13,7 @@ use super::fit_settings::FitSettings;
 use super::interface::Interface;
 use super::parameters::EditedParameters;
 use super::sample::{Sample, Scan};
+use super::solid::SolidView;
 
 /// Version of the file format.
 const VERSION: u32 = 1;
@@ -33,6 +34,9 @@ pub struct Saved {
     pub version: u32,
     /// The view of the data.
     pub view: View,
+    /// The settings of the lobe and of the surface.
+    #[serde(default)]
+    pub solid: SolidView,
     /// The theme and the visible panels.
     pub interface: Interface,
     /// The angular convention in which files are read.
@@ -183,6 +187,7 @@ impl Default for Saved {
         Self {
             version: VERSION,
             view: View::default(),
+            solid: SolidView::default(),
             interface: Interface::default(),
             convention: Convention::default(),
             fit_settings: FitSettings::default(),
@@ -309,6 +314,9 @@ impl Saved {
         }
         if !self.view.azimuth.is_finite() {
             return Some("an azimuth that is not finite".to_owned());
+        }
+        if !self.solid.is_valid() {
+            return Some("settings of the lobe or the surface out of range".to_owned());
         }
         if self.recent.len() > MOST_RECENT {
             return Some(format!("{} recent files", self.recent.len()));

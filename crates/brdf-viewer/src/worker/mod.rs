@@ -99,7 +99,7 @@ fn work_on_file(job: FileJob) -> Event {
                 Err(error) => Event::OpenFailed(error.to_string()),
             }
         }
-        FileJob::Draw(layers, view) => match run(|| write::pixels(&layers, &view)) {
+        FileJob::Draw(drawing) => match run(|| write::pixels(&drawing)) {
             Ok(image) => Event::Drawn(image),
             Err(error) => Event::WriteFailed(error.to_string()),
         },

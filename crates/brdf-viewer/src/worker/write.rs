@@ -8,17 +8,23 @@ use brdf_core::{AnyBrdf, Geometry, ParameterError};
 use brdf_fit::Measurements;
 use brdf_fit::format::two_digits;
 use brdf_fit::output::{self, write_file};
-use brdf_fit::plot::{self, PlotError, View, figure_of, write_theory_alone};
+use brdf_fit::plot::{self, Figure, PlotError, View, figure_of, write_theory_alone};
 use brdf_fit::report::{Document, Report, write_theory};
 
-use egui::ColorImage;
+use egui::{Color32, ColorImage};
+use image::RgbaImage;
 
-use crate::job::{FigureLayer, Output};
+use crate::job::{Drawing, FigureLayer, LobeDrawing, Output};
 use crate::output_kind::FigureFormat;
+use crate::solid::surface::Composition;
+use crate::solid::{lobe_figure, write_obj};
 use crate::state::parameters::EditedParameters;
 
 /// Pixels of a PNG per unit of its figure, for print quality.
 const PNG_SCALE: f32 = 3.0;
+
+/// Pixels along the picture of a surface.
+const SURFACE_SIDE: usize = 1024;
 
 /// Why a file cannot be written.
 #[derive(Debug, thiserror::Error)]
@@ -41,7 +47,10 @@ pub(super) enum WriteError {
     /// The figure cannot be drawn.
     #[error(transparent)]
     Figure(#[from] PlotError),
-    /// The pixels of the figure cannot be read.
+    /// A picture of pixels is not written as SVG.
+    #[error("the surface consists of pixels: expected a PNG")]
+    PixelsAsSvg,
+    /// The pixels of the figure cannot be read or written.
     #[error(transparent)]
     Pixels(#[from] image::ImageError),
     /// The curves cannot be formatted.
@@ -66,7 +75,8 @@ pub(super) fn write(path: &Path, output: &Output) -> Result<(), WriteError> {
         return Err(WriteError::NotRegular(path.to_owned()));
     }
     let bytes = match output {
-        Output::Figure(format, layers, view) => figure(*format, layers, view)?,
+        Output::Figure(format, drawing) => figure(*format, drawing)?,
+        Output::Mesh(lobe) => mesh(lobe)?,
         Output::Curves(measurements, parameters, psi) => curves(measurements, parameters, psi)?,
         Output::Fit(reports, _) => fits(reports)?,
     };
@@ -82,18 +92,50 @@ type Band<'a> = Box<dyn Fn(&Geometry) -> f64 + 'a>;
 /// # Errors
 ///
 /// The figure cannot be drawn.
-pub(super) fn pixels(layers: &[FigureLayer], view: &View) -> Result<ColorImage, WriteError> {
-    let png = figure(FigureFormat::Png, layers, view)?;
+pub(super) fn pixels(drawing: &Drawing) -> Result<ColorImage, WriteError> {
+    let png = figure(FigureFormat::Png, drawing)?;
     let image = image::load_from_memory_with_format(&png, image::ImageFormat::Png)?.to_rgba8();
     let size = [image.width() as usize, image.height() as usize];
     Ok(ColorImage::from_rgba_unmultiplied(size, &image))
 }
 
-fn figure(
-    format: FigureFormat,
-    layers: &[FigureLayer],
-    view: &View,
-) -> Result<Vec<u8>, WriteError> {
+fn figure(format: FigureFormat, drawing: &Drawing) -> Result<Vec<u8>, WriteError> {
+    let figure = match drawing {
+        Drawing::Curves(layers, view) => figure_of_layers(layers, view)?,
+        Drawing::Lobe(lobe) => {
+            let title = lobe.title.each_ref().map(String::as_str);
+            lobe_figure(&lobe.scene, &lobe.camera, title, lobe.ground)
+        }
+        Drawing::Surface(surface) => return surface_png(format, surface),
+    };
+    Ok(match format {
+        FigureFormat::Svg => figure.svg.into_bytes(),
+        FigureFormat::Png => figure.png(PNG_SCALE)?,
+    })
+}
+
+fn surface_png(format: FigureFormat, surface: &Composition) -> Result<Vec<u8>, WriteError> {
+    if format == FigureFormat::Svg {
+        return Err(WriteError::PixelsAsSvg);
+    }
+    let image = surface.picture(SURFACE_SIDE);
+    let size = image.size.map(|length| length as u32);
+    let bytes: Vec<u8> = image.pixels.iter().flat_map(Color32::to_array).collect();
+    let mut png = io::Cursor::new(Vec::new());
+    // A picture has as many bytes as its size says.
+    let image = RgbaImage::from_raw(size[0], size[1], bytes).unwrap_or_default();
+    image.write_to(&mut png, image::ImageFormat::Png)?;
+    Ok(png.into_inner())
+}
+
+fn mesh(lobe: &LobeDrawing) -> Result<Vec<u8>, WriteError> {
+    let mut bytes = Vec::new();
+    let title = lobe.title.each_ref().map(String::as_str);
+    write_obj(&lobe.scene.lobe, lobe.scene.radius, title, &mut bytes)?;
+    Ok(bytes)
+}
+
+fn figure_of_layers(layers: &[FigureLayer], view: &View) -> Result<Figure, WriteError> {
     let brdfs = brdfs(layers)?;
     let bands: Vec<Option<Band>> = layers
         .iter()
@@ -118,11 +160,7 @@ fn figure(
             family: layer.family,
         })
         .collect();
-    let figure = figure_of(&layers, view);
-    Ok(match format {
-        FigureFormat::Svg => figure.svg.into_bytes(),
-        FigureFormat::Png => figure.png(PNG_SCALE)?,
-    })
+    Ok(figure_of(&layers, view))
 }
 
 fn brdfs(layers: &[FigureLayer]) -> Result<Vec<AnyBrdf>, WriteError> {

@@ -1,0 +1,152 @@
+//! From radiances to the colours of a screen.
+
+use std::sync::LazyLock;
+
+use egui::{Color32, ColorImage};
+
+use super::pixels::Pixels;
+use super::shading::Radiance;
+use super::sky::Sky;
+
+/// The number of entries of the table from linear values to those of a screen.
+const ENTRIES: usize = 4096;
+
+/// The zenith angle of the reflectance that an automatic exposure shows as half of white.
+const REFERENCE_ZENITH_DEG: f64 = 30.0;
+
+/// The largest exposure in stops.
+pub const MOST_STOPS: f64 = 16.0;
+
+/// The sRGB value of each linear one: a power for each pixel would take most of the time.
+static SCREEN: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let entry = |i: usize| egui::ecolor::gamma_u8_from_linear_f32(i as f32 / (ENTRIES - 1) as f32);
+    (0..ENTRIES).map(entry).collect()
+});
+
+/// The exposure in half stops, at least 0, at which the largest hemispherical reflectance of surfaces is
+/// about half of white.
+pub fn automatic_stops<'a>(skies: impl Iterator<Item = &'a Sky>) -> f64 {
+    let zenith = REFERENCE_ZENITH_DEG.to_radians();
+    let largest = skies.map(|sky| f64::from(sky.reflectance(zenith)));
+    let largest = largest.fold(0.0, f64::max).max(1e-4);
+    let stops = (0.5 / largest).log2();
+    ((2.0 * stops).round() / 2.0).clamp(0.0, MOST_STOPS)
+}
+
+/// The exposure in half stops at which the brightest place of pictures is just not white.
+pub fn stops_for_highlights<'a>(radiances: impl Iterator<Item = &'a Radiance>) -> f64 {
+    let values = radiances.flat_map(|radiance| radiance.channels.iter().flatten());
+    let largest = values.copied().fold(1e-4_f32, f32::max);
+    let stops = -f64::from(largest).log2();
+    ((2.0 * stops).floor() / 2.0).clamp(-MOST_STOPS, MOST_STOPS)
+}
+
+/// The picture at an exposure in stops, each of which doubles the light, on a transparent ground. What is
+/// brighter than white is white.
+pub fn develop(pixels: &Pixels, radiance: &Radiance, stops: f64) -> ColorImage {
+    let factor = stops.exp2() as f32 * (ENTRIES - 1) as f32;
+    let screen: &[u8] = &SCREEN;
+    let shown =
+        |value: f32| screen[(value * factor + 0.5).clamp(0.0, (ENTRIES - 1) as f32) as usize];
+    let mut image = ColorImage::filled(pixels.size, Color32::TRANSPARENT);
+    let channel = |i: usize| &radiance.channels[i.min(radiance.channels.len() - 1)];
+    if radiance.channels.is_empty() {
+        return image;
+    }
+    let is_grey = radiance.channels.len() < 3;
+    let (red, green, blue) = (channel(0), channel(1), channel(2));
+    for (i, seen) in pixels.seen.iter().enumerate() {
+        let red = shown(red[i]);
+        let (green, blue) = if is_grey {
+            (red, red)
+        } else {
+            (shown(green[i]), shown(blue[i]))
+        };
+        image.pixels[seen.pixel as usize] = if seen.coverage == u8::MAX {
+            Color32::from_rgb(red, green, blue)
+        } else {
+            Color32::from_rgba_unmultiplied(red, green, blue, seen.coverage)
+        };
+    }
+    image
+}
+
+#[cfg(test)]
+mod tests {
+    use brdf_core::{AnyBrdf, Family, ModelParameters};
+
+    use super::super::{Light, shade};
+    use super::*;
+
+    fn picture(brdfs: &[AnyBrdf], stops: f64) -> ColorImage {
+        let pixels = Pixels::ball(64, [0.3, 0.2, 0.933]);
+        let skies: Vec<Sky> = brdfs.iter().map(Sky::new).collect();
+        let channels: Vec<_> = brdfs.iter().copied().zip(&skies).collect();
+        let light = Light {
+            lamp: 0.8,
+            sky: 0.2,
+        };
+        develop(&pixels, &shade(&pixels, &channels, light), stops)
+    }
+
+    fn brdf(kd: f64) -> AnyBrdf {
+        let at = ModelParameters {
+            k2: 0.05,
+            kd,
+            k1: 0.2,
+            n: 1.5,
+            p: 1.0,
+        };
+        AnyBrdf::new(Family::Ggx, &at).unwrap()
+    }
+
+    #[test]
+    fn three_equal_fits_are_grey_and_like_one() {
+        let three = picture(&[brdf(0.3); 3], 1.0);
+        let colours = three.pixels.iter();
+        assert!(colours.clone().all(|c| c.r() == c.g() && c.g() == c.b()));
+        assert!(colours.clone().any(|c| c.r() > 100));
+        assert_eq!(three, picture(&[brdf(0.3)], 1.0));
+    }
+
+    #[test]
+    fn the_channels_are_red_green_and_blue() {
+        let image = picture(&[brdf(0.9), brdf(0.4), brdf(0.1)], 0.0);
+        let middle = image.pixels[32 * 64 + 40];
+        assert!(
+            middle.r() > middle.g() && middle.g() > middle.b(),
+            "{middle:?}"
+        );
+    }
+
+    #[test]
+    fn the_brightest_place_is_just_not_white() {
+        let pixels = Pixels::plate(64, 1.3);
+        let sky = Sky::new(&brdf(0.1));
+        let light = Light {
+            lamp: 1.0,
+            sky: 0.0,
+        };
+        let radiance = shade(&pixels, &[(brdf(0.1), &sky)], light);
+        let stops = stops_for_highlights(std::iter::once(&radiance));
+        let largest = radiance.channels[0].iter().copied().fold(0.0, f32::max);
+        let shown = f64::from(largest) * stops.exp2();
+        assert!((0.7..=1.0).contains(&shown), "{shown}");
+    }
+
+    #[test]
+    fn a_stop_doubles_the_light() {
+        let [dark, bright] = [0.0, 1.0].map(|stops| picture(&[brdf(0.1)], stops));
+        let linear = |c: Color32| egui::ecolor::linear_f32_from_gamma_u8(c.r());
+        let at = 30 * 64 + 36;
+        let ratio = linear(bright.pixels[at]) / linear(dark.pixels[at]);
+        assert!((ratio - 2.0).abs() < 0.05, "{ratio}");
+    }
+
+    #[test]
+    fn the_automatic_exposure_brightens_dark_paint_only() {
+        let stops = |kd: f64| automatic_stops(std::iter::once(&Sky::new(&brdf(kd))));
+        assert_eq!(stops(0.9), 0.0);
+        assert!((2.0..4.0).contains(&stops(0.03)), "{}", stops(0.03));
+    }
+}

@@ -12,3 +12,4 @@ mod parameters;
 mod result;
 mod session;
 mod snapshots;
+mod solid;

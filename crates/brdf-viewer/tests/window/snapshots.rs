@@ -7,6 +7,7 @@ use crate::common::{NoDialogs, Window, drop_file, settle, window_with};
 use brdf_fit::Model;
 use brdf_viewer::intent::{Command, Intent};
 use brdf_viewer::state::angle_range::End;
+use brdf_viewer::state::fit_settings::Scope;
 use brdf_viewer::state::id::SampleId;
 use brdf_viewer::state::interface::ResultTab;
 use brdf_viewer::state::saved::Settings;
@@ -14,13 +15,15 @@ use brdf_viewer::state::saved::Settings;
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 
 /// The states of the window of which there are snapshots.
-const STATES: [&str; 10] = [
+const STATES: [&str; 12] = [
     "empty",
     "loaded",
     "fitted",
     "logarithmic",
     "panels",
     "polar",
+    "lobe",
+    "surface",
     "compared",
     "limits",
     "wavelengths",
@@ -48,6 +51,17 @@ fn bring_to(window: &mut Window, state: &str) {
         "polar" => {
             apply(Intent::Command(Command::Polar));
             apply(Intent::Command(Command::Logarithmic));
+        }
+        "lobe" => {
+            apply(Intent::Command(Command::Pin));
+            apply(Intent::Model(Model::SmithN, Scope::All));
+            apply(Intent::Command(Command::Fit));
+            apply(Intent::Command(Command::Lobe));
+        }
+        "surface" => {
+            apply(Intent::OpenBuiltIn(3));
+            apply(Intent::Command(Command::Fit));
+            apply(Intent::Command(Command::Surface));
         }
         "compared" => {
             apply(Intent::Tab(ResultTab::Models));

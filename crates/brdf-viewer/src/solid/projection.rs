@@ -158,12 +158,17 @@ pub fn project(scene: &LobeScene, camera: &Camera, area: [f64; 4], inks: &Inks) 
         .collect();
     draw_faces(&scene.lobe, &seen, pieces);
     draw_outline(&frame, &seen, &projection.vertices, pieces);
-    if let Some(ghost) = &scene.ghost {
-        draw_lines(&frame, &ghost.points(scene.radius), inks.ghost, pieces);
+    // Without readings and a second lobe nothing asks for the depth.
+    let is_alone = scene.readings.is_empty() && scene.ghost.is_none();
+    let depth = (!is_alone).then(|| DepthBuffer::new(&seen, scene.lobe.faces()));
+    if let (Some(ghost), Some(depth)) = (&scene.ghost, &depth) {
+        draw_ghost(&frame, ghost, scene, depth, inks, pieces);
     }
     surroundings::draw_rays(&frame, scene.lobe.psi, inks, pieces);
     pieces[behind..].sort_by(|a, b| a.0.total_cmp(&b.0));
-    draw_readings(&frame, scene, &seen, inks, pieces);
+    if let Some(depth) = &depth {
+        draw_readings(&frame, scene, depth, inks, pieces);
+    }
     surroundings::draw_names(&frame, scene, pieces);
     projection
 }
@@ -237,11 +242,30 @@ fn draw_outline(
     }
 }
 
-/// Draws a lobe as some of the lines of its grid.
-fn draw_lines(frame: &Frame, points: &[Vector], colour: Rgb, pieces: &mut Vec<(f64, Piece)>) {
+/// Draws a second lobe as some of the lines of its grid. The lines of its front that are inside the first
+/// lobe shine through it.
+fn draw_ghost(
+    frame: &Frame,
+    ghost: &Lobe,
+    scene: &LobeScene,
+    lobe: &DepthBuffer,
+    inks: &Inks,
+    pieces: &mut Vec<(f64, Piece)>,
+) {
+    let points = ghost.points(scene.radius).into_iter();
+    let seen: Vec<Vector> = points.map(|point| frame.seen(point)).collect();
+    let own = DepthBuffer::new(&seen, ghost.faces());
+    let through = [0, 1, 2].map(|i| inks.lobe[i].midpoint(inks.ghost[i]));
     let mut line = |a: usize, b: usize| {
-        let [(from, near), (to, far)] = [a, b].map(|i| frame.place(points[i]));
-        pieces.push((0.5 * (near + far), Piece::Line([from, to], 1.0, colour)));
+        let middle = scaled(sum(seen[a], seen[b]), 0.5);
+        let ends = [a, b].map(|i| frame.placed(seen[i]));
+        let (depth, colour) = if lobe.hides(middle) && !own.hides(middle) {
+            // Nearer than the lobe, which reaches up to 1.
+            (2.0, through)
+        } else {
+            (middle[2], inks.ghost)
+        };
+        pieces.push((depth, Piece::Line(ends, 1.0, colour)));
     };
     for row in 0..ROWS {
         for column in 0..COLUMNS {
@@ -259,20 +283,16 @@ fn draw_lines(frame: &Frame, points: &[Vector], colour: Rgb, pieces: &mut Vec<(f
 fn draw_readings(
     frame: &Frame,
     scene: &LobeScene,
-    seen: &[Vector],
+    depth: &DepthBuffer,
     inks: &Inks,
     pieces: &mut Vec<(f64, Piece)>,
 ) {
-    if scene.readings.is_empty() {
-        return;
-    }
-    let buffer = DepthBuffer::new(seen, scene.lobe.faces());
     for spot in &scene.readings {
         let Some(distance) = scene.radius.fraction(spot.value) else {
             continue;
         };
         let at = frame.seen(scaled(spot.direction, distance));
-        let mark = mark(frame.placed(at), spot, buffer.hides(at), inks);
+        let mark = mark(frame.placed(at), spot, depth.hides(at), inks);
         pieces.extend(mark.into_iter().map(|piece| (f64::INFINITY, piece)));
     }
 }

@@ -14,13 +14,11 @@ impl State {
     pub(in crate::state) fn drawn_lobe(&self) -> Option<LobeDrawing> {
         let scene = self.derived_solid.lobe()?;
         let sample = self.active_sample()?;
-        let beside = self.subject_beside();
-        let beside = beside.map_or_else(String::new, |other| format!("; lines: {}", other.name));
         let theory = theory_of(sample.scan());
         Some(LobeDrawing {
             title: [
                 format!("{}, {theory}", sample.name_of(sample.scan())),
-                format!("{}{beside}", self.lobe_caption()),
+                self.lobe_caption(),
             ],
             camera: self.solid.camera,
             ground: self.ground(),
@@ -65,7 +63,9 @@ impl State {
             0 => String::new(),
             count => format!(", {count} without a radius not shown"),
         };
-        format!("{quantity} / (1/sr) at ψ = {psi}°{rim}, {scale} radius{readings}{missing}")
+        let beside = self.subject_beside();
+        let beside = beside.map_or_else(String::new, |other| format!("; lines: {}", other.name));
+        format!("{quantity} / (1/sr) at ψ = {psi}°{rim}, {scale} radius{readings}{missing}{beside}")
     }
 
     /// How the surface is lit and exposed, in a line.

@@ -4,7 +4,7 @@ use brdf_core::AnyBrdf;
 use brdf_fit::plot::Ground;
 use egui::{Color32, ColorImage};
 
-use super::{Light, Pixels, Sky, develop, lamp_direction, shade};
+use super::{Light, Pixels, Radiance, Sky, develop, lamp_direction, shade};
 /// Surfaces with what lights and exposes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Composition {
@@ -38,10 +38,13 @@ impl Composition {
         let mut image = ColorImage::filled(size, page);
         for (column, brdfs) in self.surfaces.iter().enumerate() {
             let skies: Vec<Sky> = brdfs.iter().map(Sky::new).collect();
-            let channels: Vec<_> = brdfs.iter().copied().zip(&skies).collect();
             for ((pixels, top), stops) in parts.iter().zip([0, side]).zip(self.stops) {
-                let radiance = shade(pixels, &channels, self.light);
-                let part = develop(pixels, &radiance, stops);
+                let channels: Vec<Radiance> = brdfs
+                    .iter()
+                    .zip(&skies)
+                    .map(|(brdf, sky)| shade(pixels, brdf, sky, self.light))
+                    .collect();
+                let part = develop(pixels, &channels.iter().collect::<Vec<_>>(), stops);
                 draw(&part, [column * side, top], &mut image);
             }
         }

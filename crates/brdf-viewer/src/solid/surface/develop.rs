@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use egui::{Color32, ColorImage};
 
-use super::pixels::Pixels;
+use super::pixels::{Pixels, Seen};
 use super::shading::Radiance;
 use super::sky::Sky;
 
@@ -35,38 +35,37 @@ pub fn automatic_stops<'a>(skies: impl Iterator<Item = &'a Sky>) -> f64 {
 
 /// The exposure in half stops at which the brightest place of pictures is just not white.
 pub fn stops_for_highlights<'a>(radiances: impl Iterator<Item = &'a Radiance>) -> f64 {
-    let values = radiances.flat_map(|radiance| radiance.channels.iter().flatten());
-    let largest = values.copied().fold(1e-4_f32, f32::max);
+    let largest = radiances.map(|radiance| radiance.largest);
+    let largest = largest.fold(1e-4, f32::max);
     let stops = -f64::from(largest).log2();
     ((2.0 * stops).floor() / 2.0).clamp(-MOST_STOPS, MOST_STOPS)
 }
 
-/// The picture at an exposure in stops, each of which doubles the light, on a transparent ground. What is
-/// brighter than white is white.
-pub fn develop(pixels: &Pixels, radiance: &Radiance, stops: f64) -> ColorImage {
-    let factor = stops.exp2() as f32 * (ENTRIES - 1) as f32;
+/// The picture at an exposure in stops, each of which doubles the light, on a transparent ground: in
+/// colour from the radiances of red, green and blue, in grey from one. What is brighter than white is
+/// white.
+pub fn develop(pixels: &Pixels, channels: &[&Radiance], stops: f64) -> ColorImage {
+    let largest = (ENTRIES - 1) as f32;
+    let factor = stops.exp2() as f32 * largest;
     let screen: &[u8] = &SCREEN;
-    let shown =
-        |value: f32| screen[(value * factor + 0.5).clamp(0.0, (ENTRIES - 1) as f32) as usize];
+    let shown = |value: f32| screen[(value * factor + 0.5).clamp(0.0, largest) as usize];
     let mut image = ColorImage::filled(pixels.size, Color32::TRANSPARENT);
-    let channel = |i: usize| &radiance.channels[i.min(radiance.channels.len() - 1)];
-    if radiance.channels.is_empty() {
-        return image;
-    }
-    let is_grey = radiance.channels.len() < 3;
-    let (red, green, blue) = (channel(0), channel(1), channel(2));
-    for (i, seen) in pixels.seen.iter().enumerate() {
-        let red = shown(red[i]);
-        let (green, blue) = if is_grey {
-            (red, red)
-        } else {
-            (shown(green[i]), shown(blue[i]))
-        };
+    let mut set = |seen: &Seen, [red, green, blue]: [u8; 3]| {
         image.pixels[seen.pixel as usize] = if seen.coverage == u8::MAX {
             Color32::from_rgb(red, green, blue)
         } else {
             Color32::from_rgba_unmultiplied(red, green, blue, seen.coverage)
         };
+    };
+    if let [red, green, blue] = channels {
+        let values = red.values.iter().zip(&green.values).zip(&blue.values);
+        for (seen, ((red, green), blue)) in pixels.seen.iter().zip(values) {
+            set(seen, [shown(*red), shown(*green), shown(*blue)]);
+        }
+    } else if let Some(grey) = channels.first() {
+        for (seen, grey) in pixels.seen.iter().zip(&grey.values) {
+            set(seen, [shown(*grey); 3]);
+        }
     }
     image
 }
@@ -80,13 +79,15 @@ mod tests {
 
     fn picture(brdfs: &[AnyBrdf], stops: f64) -> ColorImage {
         let pixels = Pixels::ball(64, [0.3, 0.2, 0.933]);
-        let skies: Vec<Sky> = brdfs.iter().map(Sky::new).collect();
-        let channels: Vec<_> = brdfs.iter().copied().zip(&skies).collect();
         let light = Light {
             lamp: 0.8,
             sky: 0.2,
         };
-        develop(&pixels, &shade(&pixels, &channels, light), stops)
+        let radiances: Vec<Radiance> = brdfs
+            .iter()
+            .map(|brdf| shade(&pixels, brdf, &Sky::new(brdf), light))
+            .collect();
+        develop(&pixels, &radiances.iter().collect::<Vec<_>>(), stops)
     }
 
     fn brdf(kd: f64) -> AnyBrdf {
@@ -127,10 +128,9 @@ mod tests {
             lamp: 1.0,
             sky: 0.0,
         };
-        let radiance = shade(&pixels, &[(brdf(0.1), &sky)], light);
+        let radiance = shade(&pixels, &brdf(0.1), &sky, light);
         let stops = stops_for_highlights(std::iter::once(&radiance));
-        let largest = radiance.channels[0].iter().copied().fold(0.0, f32::max);
-        let shown = f64::from(largest) * stops.exp2();
+        let shown = f64::from(radiance.largest) * stops.exp2();
         assert!((0.7..=1.0).contains(&shown), "{shown}");
     }
 

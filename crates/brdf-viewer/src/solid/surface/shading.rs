@@ -18,26 +18,28 @@ pub struct Light {
     pub sky: f32,
 }
 
-/// The radiance of each pixel that shows the surface, in units of white: a channel for each BRDF.
+/// The radiance of each pixel that shows the surface, in units of white, at one wavelength.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Radiance {
-    /// The channels: red, green and blue, or one for all three.
-    pub channels: Vec<Vec<f32>>,
+    pub(super) values: Vec<f32>,
+    /// The largest of them.
+    pub(super) largest: f32,
 }
 
-/// The radiance of a surface with a BRDF for each channel. Each comes with its sky.
-pub fn shade(pixels: &Pixels, channels: &[(AnyBrdf, &Sky)], light: Light) -> Radiance {
-    let channel = |(brdf, sky): &(AnyBrdf, &Sky)| {
-        let seen = pixels.seen.iter();
-        let mut sums: Vec<f32> = seen.map(|seen| light.sky * sky.at(seen.sky)).collect();
-        if light.lamp > 0.0 {
-            add_lamp(pixels, *brdf, light.lamp, &mut sums);
+/// The radiance of a surface with a BRDF and its sky.
+pub fn shade(pixels: &Pixels, brdf: &AnyBrdf, sky: &Sky, light: Light) -> Radiance {
+    let mut values: Vec<f32> = match light.sky {
+        0.0 => vec![0.0; pixels.seen.len()],
+        share => {
+            let seen = pixels.seen.iter();
+            seen.map(|seen| share * sky.at(seen.sky)).collect()
         }
-        sums
     };
-    Radiance {
-        channels: channels.iter().map(channel).collect(),
+    if light.lamp > 0.0 {
+        add_lamp(pixels, *brdf, light.lamp, &mut values);
     }
+    let largest = values.iter().copied().fold(0.0, f32::max);
+    Radiance { values, largest }
 }
 
 fn add_lamp(pixels: &Pixels, brdf: AnyBrdf, lamp: f32, sums: &mut [f32]) {
@@ -77,8 +79,7 @@ mod tests {
 
     fn radiance(pixels: &Pixels, brdf: AnyBrdf, light: Light) -> Vec<f32> {
         let sky = Sky::new(&brdf);
-        let mut radiance = shade(pixels, &[(brdf, &sky)], light);
-        radiance.channels.remove(0)
+        shade(pixels, &brdf, &sky, light).values
     }
 
     /// The normal of a pixel of a ball.

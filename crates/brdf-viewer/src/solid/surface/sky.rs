@@ -6,7 +6,7 @@ use brdf_core::AnyBrdf;
 const ENTRIES: usize = 1024;
 
 /// The number of zenith angles at which the reflectance is integrated.
-const NODES: usize = 25;
+const NODES: usize = 16;
 
 /// The largest of them in radians (89 deg): nearer to the horizon the reflectance stays the same, since a
 /// pixel there is a part of the limb.
@@ -24,7 +24,7 @@ pub struct Sky {
 
 impl Sky {
     /// The sky on a BRDF. Between the angles that are integrated, which crowd towards the horizon, the
-    /// reflectance is interpolated.
+    /// reflectance is interpolated by cubics.
     pub fn new(brdf: &AnyBrdf) -> Self {
         let angle = |i: usize| {
             let part = i as f64 / (NODES - 1) as f64;
@@ -41,8 +41,7 @@ impl Sky {
             while before + 2 < NODES && nodes[before + 1].0 < theta {
                 before += 1;
             }
-            let [(a, low), (b, high)] = [nodes[before], nodes[before + 1]];
-            (low + (high - low) * ((theta - a) / (b - a)).clamp(0.0, 1.0)) as f32
+            interpolated(&nodes, before, theta) as f32
         };
         Self {
             table: (0..ENTRIES).map(entry).collect(),
@@ -64,6 +63,31 @@ impl Sky {
         let part = cos_theta.clamp(0.0, 1.0).acos() / std::f32::consts::FRAC_PI_2;
         (part * (ENTRIES - 1) as f32).round() as u16
     }
+}
+
+/// The cubic between node `i` and the next one, with the slopes of parabolas through three nodes.
+fn interpolated(nodes: &[(f64, f64)], i: usize, x: f64) -> f64 {
+    let [(from, low), (to, high)] = [nodes[i], nodes[i + 1]];
+    let (width, rise) = (to - from, high - low);
+    let u = ((x - from) / width).clamp(0.0, 1.0);
+    let [start, end] = [slope(nodes, i), slope(nodes, i + 1)].map(|slope| slope * width);
+    let (square, cube) = (u * u, u * u * u);
+    low + rise * (3.0 * square - 2.0 * cube)
+        + start * (u - 2.0 * square + cube)
+        + end * (cube - square)
+}
+
+/// The slope at a node. At the normal, around which the reflectance is even, it is 0.
+fn slope(nodes: &[(f64, f64)], i: usize) -> f64 {
+    let chord = |i: usize| (nodes[i + 1].1 - nodes[i].1) / (nodes[i + 1].0 - nodes[i].0);
+    if i == 0 {
+        return 0.0;
+    }
+    if i + 1 == nodes.len() {
+        return chord(i - 1);
+    }
+    let [before, after] = [nodes[i].0 - nodes[i - 1].0, nodes[i + 1].0 - nodes[i].0];
+    (chord(i - 1) * after + chord(i) * before) / (before + after)
 }
 
 #[cfg(test)]

@@ -54,11 +54,17 @@ pub struct Pane {
     pub revision: u64,
 }
 
+/// The cached steps of a colour.
+#[derive(Debug, Clone, Default)]
+struct CachedChannel {
+    sky: Cached<AnyBrdf, Sky>,
+    radiances: Cached<(AnyBrdf, PixelsKey, Light), Both<Radiance>>,
+}
+
 /// The cached steps of a picture.
 #[derive(Debug, Clone, Default)]
 struct CachedPane {
-    skies: [Cached<AnyBrdf, Sky>; 3],
-    radiances: Cached<(Vec<AnyBrdf>, PixelsKey, Light), Both<Radiance>>,
+    channels: Vec<CachedChannel>,
     shown: Option<(Both<f64>, Pane)>,
 }
 
@@ -112,18 +118,13 @@ impl DerivedSolid {
             [Pixels::ball(key.side, lamp), Pixels::plate(key.side, psi)]
         });
         for (pane, subject) in self.panes.iter_mut().zip(&subjects) {
-            if let Some(subject) = subject {
-                pane.shade(&subject.channels.brdfs, pixels, key, view.light());
-            }
+            let brdfs = subject.as_ref().map(|subject| &*subject.channels.brdfs);
+            pane.shade(brdfs.unwrap_or(&[]), pixels, key, view.light());
         }
-        let shown = self.panes.iter().zip(&subjects);
-        let skies = shown
-            .filter_map(|(pane, subject)| Some((pane, subject.as_ref()?)))
-            .flat_map(|(pane, subject)| pane.skies(subject.channels.brdfs.len()));
+        let channels = || self.panes.iter().flat_map(|pane| &pane.channels);
+        let skies = channels().filter_map(|channel| channel.sky.last());
         let ball = view.stops.unwrap_or_else(|| automatic_stops(skies));
-        let plates = self.panes.iter().zip(&subjects);
-        let plates = plates.filter(|(_, subject)| subject.is_some());
-        let plates = plates.filter_map(|(pane, _)| Some(&pane.radiances.last()?[1]));
+        let plates = channels().filter_map(|channel| Some(&channel.radiances.last()?[1]));
         self.stops = [ball, stops_for_highlights(plates)];
         for (pane, subject) in self.panes.iter_mut().zip(subjects) {
             pane.develop(subject, pixels, self.stops, &mut self.revision);
@@ -132,26 +133,25 @@ impl DerivedSolid {
 }
 
 impl CachedPane {
-    fn skies(&self, channels: usize) -> impl Iterator<Item = &Sky> {
-        self.skies.iter().take(channels).filter_map(Cached::last)
-    }
-
     fn shade(&mut self, brdfs: &[AnyBrdf], pixels: &Both<Pixels>, key: PixelsKey, light: Light) {
-        for (sky, brdf) in self.skies.iter_mut().zip(brdfs) {
-            sky.get(*brdf, Sky::new);
+        if self.channels.len() != brdfs.len() {
+            self.shown = None;
+            self.channels
+                .resize_with(brdfs.len(), CachedChannel::default);
         }
-        let key = (brdfs.to_vec(), key, light);
-        if self.radiances.has(&key) {
-            return;
+        for (channel, brdf) in self.channels.iter_mut().zip(brdfs) {
+            let key = (*brdf, key, light);
+            if channel.radiances.has(&key) {
+                continue;
+            }
+            self.shown = None;
+            let sky = channel.sky.get(*brdf, Sky::new);
+            channel.radiances.get(key, |_| {
+                pixels
+                    .each_ref()
+                    .map(|pixels| shade(pixels, brdf, sky, light))
+            });
         }
-        self.shown = None;
-        let skies = self.skies.iter().filter_map(Cached::last);
-        let channels: Vec<(AnyBrdf, &Sky)> = brdfs.iter().copied().zip(skies).collect();
-        self.radiances.get(key, |_| {
-            pixels
-                .each_ref()
-                .map(|pixels| shade(pixels, &channels, light))
-        });
     }
 
     fn develop(
@@ -161,7 +161,7 @@ impl CachedPane {
         stops: Both<f64>,
         revision: &mut u64,
     ) {
-        let (Some(subject), Some(radiances)) = (subject, self.radiances.last()) else {
+        let Some(subject) = subject else {
             self.shown = None;
             return;
         };
@@ -174,7 +174,12 @@ impl CachedPane {
             return;
         }
         *revision += 1;
-        let picture = |i: usize| Arc::new(develop(&pixels[i], &radiances[i], stops[i]));
+        let picture = |i: usize| {
+            let channels = self.channels.iter();
+            let radiances = channels.filter_map(|channel| Some(&channel.radiances.last()?[i]));
+            let radiances: Vec<&Radiance> = radiances.collect();
+            Arc::new(develop(&pixels[i], &radiances, stops[i]))
+        };
         let pane = Pane {
             name,
             note,

@@ -126,7 +126,47 @@ def picture(path, parts):
     }
 
 
-STEPS = {"points": points, "chi2": chi2, "weights": weights, "picture": picture}
+def ball(path, side, lamp, irradiance, sky, spp, pictures):
+    """
+    The mean of pictures of a ball, seen from far away along z, and its standard error: red, green and
+    blue of each pixel, row by row. The light comes from a direction and from all around.
+    """
+    name, _ = bsdf(path)
+    transform = mi.ScalarTransform4f()
+    emitters = {}
+    if irradiance > 0:
+        emitters["lamp"] = {
+            "type": "directional",
+            "direction": [-x for x in lamp],
+            "irradiance": {"type": "rgb", "value": irradiance},
+        }
+    if sky > 0:
+        emitters["sky"] = {"type": "constant", "radiance": {"type": "rgb", "value": sky}}
+    scene = mi.load_dict({
+        "type": "scene",
+        "integrator": {"type": "path", "max_depth": 2, "hide_emitters": True},
+        "sensor": {
+            "type": "orthographic",
+            "to_world": transform.look_at(origin=[0, 0, 5], target=[0, 0, 0], up=[0, 1, 0]),
+            "film": {
+                "type": "hdrfilm",
+                "width": side,
+                "height": side,
+                "pixel_format": "rgb",
+                "component_format": "float32",
+                "rfilter": {"type": "box"},
+            },
+            "sampler": {"type": "independent"},
+        },
+        "ball": {"type": "sphere", "bsdf": {"type": name}},
+        **emitters,
+    })
+    drawn = [np.array(mi.render(scene, spp=spp, seed=seed), dtype=float) for seed in range(pictures)]
+    mean, error = np.mean(drawn, axis=0), np.std(drawn, axis=0, ddof=1) / pictures**0.5
+    return {"mean": mean.ravel().tolist(), "error": error.ravel().tolist()}
+
+
+STEPS = {"points": points, "chi2": chi2, "weights": weights, "picture": picture, "ball": ball}
 
 
 def main():

@@ -112,8 +112,7 @@ fn show_exposure(ui: &mut Ui, state: &State, view: &mut SolidView) {
     let is_automatic = view.stops.is_none();
     let automatic = ui.add(Button::selectable(is_automatic, "auto"));
     let automatic = named(automatic, egui::Role::Button, "automatic exposure");
-    let hint =
-        "The largest reflectance is about half of white, and light surfaces are not brightened";
+    let hint = "The largest reflectance is about half of white; a light surface is shown as it is";
     if automatic.on_hover_text(hint).clicked() {
         view.stops = is_automatic.then_some(stops);
     }

@@ -3,7 +3,7 @@
 use super::vector::Vector;
 
 /// The number of cells along each side.
-const SIDE: usize = 240;
+const SIDE: usize = 160;
 
 /// The picture reaches from minus this distance to this one along both axes.
 const REACH: f64 = 1.25;

@@ -165,12 +165,29 @@ pub fn project(scene: &LobeScene, camera: &Camera, area: [f64; 4], inks: &Inks) 
         draw_ghost(&frame, ghost, scene, depth, inks, pieces);
     }
     surroundings::draw_rays(&frame, scene.lobe.psi, inks, pieces);
-    pieces[behind..].sort_by(|a, b| a.0.total_cmp(&b.0));
+    sort(&mut pieces[behind..]);
     if let Some(depth) = &depth {
         draw_readings(&frame, scene, depth, inks, pieces);
     }
     surroundings::draw_names(&frame, scene, pieces);
     projection
+}
+
+/// Sorts pieces from the farthest to the nearest. Their depths are sorted first, since pieces are large.
+fn sort(pieces: &mut [(f64, Piece)]) {
+    let depths = pieces.iter().map(|(depth, _)| *depth);
+    let mut order: Vec<(f64, usize)> = depths.zip(0..).collect();
+    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let take = |i: usize, pieces: &mut [(f64, Piece)]| {
+        std::mem::replace(&mut pieces[i].1, Piece::Face([0; 4]))
+    };
+    let sorted: Vec<(f64, Piece)> = order
+        .into_iter()
+        .map(|(depth, i)| (depth, take(i, pieces)))
+        .collect();
+    for (piece, sorted) in pieces.iter_mut().zip(sorted) {
+        *piece = sorted;
+    }
 }
 
 fn draw_faces(lobe: &Lobe, seen: &[Vector], pieces: &mut Vec<(f64, Piece)>) {

@@ -14,7 +14,7 @@ const ENTRIES: usize = 4096;
 /// The zenith angle of the reflectance that an automatic exposure shows as half of white.
 const REFERENCE_ZENITH_DEG: f64 = 30.0;
 
-/// The largest exposure in stops.
+/// The largest exposure in stops, to both sides.
 pub const MOST_STOPS: f64 = 16.0;
 
 /// The sRGB value of each linear one: a power for each pixel would take most of the time.
@@ -23,14 +23,19 @@ static SCREEN: LazyLock<Vec<u8>> = LazyLock::new(|| {
     (0..ENTRIES).map(entry).collect()
 });
 
-/// The exposure in half stops, at least 0, at which the largest hemispherical reflectance of surfaces is
-/// about half of white.
+/// The exposure in half stops at which the largest hemispherical reflectance of surfaces is about half of
+/// white. Those above half of white are not darkened, unless they reflect more than all light, as the fit of
+/// a scan with another scale may.
 pub fn automatic_stops<'a>(skies: impl Iterator<Item = &'a Sky>) -> f64 {
     let zenith = REFERENCE_ZENITH_DEG.to_radians();
     let largest = skies.map(|sky| f64::from(sky.reflectance(zenith)));
     let largest = largest.fold(0.0, f64::max).max(1e-4);
-    let stops = (0.5 / largest).log2();
-    ((2.0 * stops).round() / 2.0).clamp(0.0, MOST_STOPS)
+    let half_stops = if largest > 1.0 {
+        (2.0 * largest.recip().log2()).floor()
+    } else {
+        (2.0 * (0.5 / largest).log2()).round().max(0.0)
+    };
+    (0.5 * half_stops).clamp(-MOST_STOPS, MOST_STOPS)
 }
 
 /// The exposure in half stops at which the brightest place of pictures is just not white.
@@ -147,6 +152,7 @@ mod tests {
     fn the_automatic_exposure_brightens_dark_paint_only() {
         let stops = |kd: f64| automatic_stops(std::iter::once(&Sky::new(&brdf(kd))));
         assert_eq!(stops(0.9), 0.0);
+        assert_eq!(stops(3.8), -2.0);
         assert!((2.0..4.0).contains(&stops(0.03)), "{}", stops(0.03));
     }
 }

@@ -26,6 +26,15 @@ pub struct Radiance {
     pub(super) largest: f32,
 }
 
+impl Radiance {
+    /// The radiance of each pixel that is wholly covered by the surface, with its index in the picture.
+    pub fn covered(&self, pixels: &Pixels) -> impl Iterator<Item = (usize, f32)> {
+        let values = pixels.seen.iter().zip(&self.values);
+        let covered = values.filter(|(seen, _)| seen.coverage == u8::MAX);
+        covered.map(|(seen, value)| (seen.pixel as usize, *value))
+    }
+}
+
 /// The radiance of a surface with a BRDF and its sky.
 pub fn shade(pixels: &Pixels, brdf: &AnyBrdf, sky: &Sky, light: Light) -> Radiance {
     let mut values: Vec<f32> = match light.sky {

@@ -76,7 +76,7 @@ impl SolidView {
             && self.lamp_deg.iter().all(|angle| angle.is_finite())
             && (SMALLEST_PLATE_PSI_DEG..=LARGEST_PSI_DEG).contains(&self.plate_psi_deg)
             && (0.0..=100.0).contains(&self.sky_percent)
-            && (0.0..=MOST_STOPS).contains(&self.stops.unwrap_or(0.0))
+            && (-MOST_STOPS..=MOST_STOPS).contains(&self.stops.unwrap_or(0.0))
     }
 
     /// The lamp moved by angles in degrees, to the right and upwards as far as it can.

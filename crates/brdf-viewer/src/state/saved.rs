@@ -204,7 +204,7 @@ pub enum ReadResult {
     /// There is no file, as in the first session.
     Missing,
     /// The settings of the last session.
-    Valid(Saved),
+    Valid(Box<Saved>),
     /// The file cannot be used, and a message for the user.
     Damaged(String),
 }
@@ -254,7 +254,7 @@ impl Settings {
         };
         let (saved, note) = match Saved::read(file) {
             ReadResult::Missing => (Saved::default(), None),
-            ReadResult::Valid(saved) => (saved, None),
+            ReadResult::Valid(saved) => (*saved, None),
             ReadResult::Damaged(note) => (Saved::default(), Some(note)),
         };
         Self { path, saved, note }
@@ -273,7 +273,7 @@ impl Saved {
         };
         match serde_json::from_str::<Self>(&text) {
             Ok(saved) => match saved.problem() {
-                None => ReadResult::Valid(saved),
+                None => ReadResult::Valid(Box::new(saved)),
                 Some(problem) => ReadResult::Damaged(set_aside(path, &problem)),
             },
             Err(error) => ReadResult::Damaged(set_aside(path, &error.to_string())),
@@ -353,7 +353,7 @@ mod tests {
         saved.interface.dark = Some(true);
         saved.recent = vec![PathBuf::from("a.csv")];
         saved.write(&path).unwrap();
-        assert_eq!(Saved::read(&path), ReadResult::Valid(saved));
+        assert_eq!(Saved::read(&path), ReadResult::Valid(Box::new(saved)));
     }
 
     #[test]

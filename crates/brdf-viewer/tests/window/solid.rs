@@ -1,5 +1,6 @@
 //! The lobe and the surface in three dimensions.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::common::{
@@ -252,7 +253,7 @@ fn three_wavelengths_are_red_green_and_blue() {
     let mut text = "wavelength_um,psi_deg,theta_deg,brdf_per_sr\n".to_owned();
     for (um, brdf) in [(0.46, 0.02), (0.55, 0.06), (0.61, 0.2)] {
         for theta in [-60, -30, 0, 20, 50] {
-            text += &format!("{um},10,{theta},{brdf}\n{um},50,{theta},{brdf}\n");
+            let _ = writeln!(text, "{um},10,{theta},{brdf}\n{um},50,{theta},{brdf}");
         }
     }
     let mut window = empty();

@@ -5,6 +5,7 @@ use brdf_fit::plot::{Quantity, Scale};
 
 use super::view::SolidView;
 use crate::job::LobeDrawing;
+use crate::solid::LobeScene;
 use crate::solid::surface::Composition;
 use crate::state::State;
 use crate::state::sample::Scan;
@@ -58,7 +59,7 @@ impl State {
             let at = rounded_deg(measured.psi);
             format!("; readings at {at}°, rings behind or inside the lobe")
         });
-        let missing = self.derived_solid.lobe().map_or(0, |lobe| lobe.not_shown());
+        let missing = self.derived_solid.lobe().map_or(0, LobeScene::not_shown);
         let missing = match missing {
             0 => String::new(),
             count => format!(", {count} without a radius not shown"),

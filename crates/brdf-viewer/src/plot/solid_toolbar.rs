@@ -98,7 +98,7 @@ pub(super) fn show_surface(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>
 fn show_exposure(ui: &mut Ui, state: &State, view: &mut SolidView) {
     let [mut stops, _] = state.derived_solid.stops();
     let number = DragValue::new(&mut stops)
-        .range(0.0..=MOST_STOPS)
+        .range(-MOST_STOPS..=MOST_STOPS)
         .speed(0.05)
         .max_decimals(1)
         .suffix(" stops");

@@ -20,6 +20,7 @@ fn ready(command: Command) -> Window {
         Command::Redo => menu(&mut window, "Edit", "Undo"),
         Command::UnpinAll => menu(&mut window, "Edit", "Pin curves"),
         Command::SystemTheme => window.state_mut().state.interface.dark = Some(true),
+        Command::Export(OutputKind::Mesh) => click(&mut window, "Lobe"),
         // A run that does not end by itself, because the worker does not know it.
         Command::Cancel => {
             let scan = window.state().state.active_sample().unwrap().scan_id();

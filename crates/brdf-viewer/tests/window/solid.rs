@@ -228,6 +228,16 @@ fn the_surface_follows_a_parameter_the_lamp_and_the_exposure() {
 }
 
 #[test]
+fn a_fit_that_reflects_more_than_all_light_is_darkened_automatically() {
+    let mut window = with_z307();
+    type_number(&mut window, "kD", "4");
+    click(&mut window, "Surface");
+    settle(&mut window);
+    assert_eq!(view(&window).stops, None);
+    assert_eq!(window.state().state.derived_solid.stops()[0], -2.5);
+}
+
+#[test]
 fn two_samples_are_side_by_side_at_the_same_exposure_and_written_as_png() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");

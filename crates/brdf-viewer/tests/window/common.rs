@@ -17,7 +17,7 @@ use egui::accesskit::Role;
 use egui::epaint::{ColorMode, Shape};
 use egui::{Color32, Pos2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use egui_plot::{PlotMemory, PlotPoint};
 
 /// An offscreen window.
@@ -161,7 +161,13 @@ pub(crate) fn open_menu_and_click(window: &mut Window, title: &str, entry: &str)
         let label = node.label().unwrap_or_default();
         node.role() == Role::Button && (label == entry || label.starts_with(&prefix))
     });
-    let found = entries.last().unwrap();
+    // The menu may cover a button of the same name.
+    let entries: Vec<_> = entries.collect();
+    let has_key = |node: &&egui_kittest::Node<'_>| {
+        let label = node.accesskit_node().label().unwrap_or_default();
+        label.starts_with(&prefix)
+    };
+    let found = entries.iter().rfind(has_key).or(entries.last()).unwrap();
     found.click();
 }
 

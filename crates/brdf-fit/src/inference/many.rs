@@ -41,8 +41,8 @@ pub struct ParameterIntervals {
 ///
 /// # Errors
 ///
-/// The angles, the refractive index or the weights are not valid, the scans have another number of readings,
-/// or the observer cancels.
+/// The scans have another number of readings than there are angles, or the observer cancels. With angles or a
+/// refractive index outside their domain, no scan can be fitted, and all values are NaN.
 ///
 /// # Examples
 ///

@@ -22,8 +22,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
-use brdf_core::Parameters;
+use brdf_core::{AnyBrdf, Parameters};
 use brdf_fit::Measurements;
+use brdf_fit::export::{Fitted, Material};
 use escargot::format::Message as CargoMessage;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
@@ -52,6 +53,21 @@ pub fn run_fit<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>) -> Outpu
         .args(arguments)
         .output()
         .expect("the program starts")
+}
+
+/// A material of red, green and blue, as of fits to a scan of these wavelengths.
+pub fn made_up_material(brdfs: &[AnyBrdf]) -> Material {
+    let fits = brdfs.iter().zip([0.62, 0.55, 0.46]);
+    let fits = fits.map(|(brdf, um)| Fitted {
+        file: "made-up.csv".to_owned(),
+        wavelength_um: Some(um),
+        brdf: *brdf,
+        e_percent: 1.0,
+        psi_max_deg: 70.0,
+    });
+    Material {
+        fits: fits.collect(),
+    }
 }
 
 /// A text with single blanks between its words: sentences of a report without their line breaks.

@@ -8,8 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters, Sampler};
-use brdf_fit::export::{Fitted, Material};
-use brdf_tests::{export_command, generator, in_workspace, python, run_fit, run_python};
+use brdf_fit::export::Material;
+use brdf_tests::{
+    export_command, generator, in_workspace, made_up_material, python, run_fit, run_python,
+};
 use nalgebra::Vector3;
 use rand::RngExt;
 use rand::rngs::StdRng;
@@ -18,9 +20,6 @@ use tempfile::TempDir;
 
 const SCALAR: &str = "scalar_rgb";
 const LLVM: &str = "llvm_ad_rgb";
-
-/// Red, green and blue: the wavelengths of a made-up material in micrometres.
-const WAVELENGTHS_UM: [f64; 3] = [0.62, 0.55, 0.46];
 
 /// The exported plugins of a test, each under a name of its own.
 struct Plugins {
@@ -40,7 +39,7 @@ impl Plugins {
     /// Exports the BRDFs of one wavelength or of three.
     fn export(&self, name: &str, brdfs: &[AnyBrdf]) -> PathBuf {
         let plugin = self.path(&format!("{name}.py"));
-        let output = self.try_export(&material(brdfs), &["--name", name], &plugin);
+        let output = self.try_export(&made_up_material(brdfs), &["--name", name], &plugin);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         plugin
     }
@@ -53,19 +52,6 @@ impl Plugins {
         let mut command = export_command();
         command.arg(&fits).args(["--to", "mitsuba"]).args(options);
         command.arg("-o").arg(plugin).output().unwrap()
-    }
-}
-
-fn material(brdfs: &[AnyBrdf]) -> Material {
-    let fits = brdfs.iter().zip(WAVELENGTHS_UM).map(|(brdf, um)| Fitted {
-        file: "made-up.csv".to_owned(),
-        wavelength_um: Some(um),
-        brdf: *brdf,
-        e_percent: 1.0,
-        psi_max_deg: 70.0,
-    });
-    Material {
-        fits: fits.collect(),
     }
 }
 
@@ -467,7 +453,7 @@ fn from_a_scan_to_a_picture_in_three_commands() {
 fn two_files_are_written_and_named() {
     let plugins = Plugins::new();
     let plugin = plugins.path("material.py");
-    let output = plugins.try_export(&material(&colourful()), &[], &plugin);
+    let output = plugins.try_export(&made_up_material(&colourful()), &[], &plugin);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let message = String::from_utf8(output.stdout).unwrap();
     let scene = plugin.with_extension("xml");
@@ -487,7 +473,7 @@ fn what_cannot_be_written_is_not_written_in_part() {
     let plugins = Plugins::new();
     let plugin = plugins.path("material.py");
     fs::create_dir(plugin.with_extension("xml")).unwrap();
-    let output = plugins.try_export(&material(&colourful()), &[], &plugin);
+    let output = plugins.try_export(&made_up_material(&colourful()), &[], &plugin);
     assert_eq!(output.status.code(), Some(2));
     assert!(
         stderr(&output).contains("material.xml: cannot be written"),
@@ -507,7 +493,7 @@ fn bad_usage_is_reported() {
         assert!(!plugin.exists());
         stderr(&output)
     };
-    let colourful = material(&colourful());
+    let colourful = made_up_material(&colourful());
     let message = refused(&colourful, &[], &plugins.path("material.xml"));
     assert!(
         message.contains("is an input or another output"),

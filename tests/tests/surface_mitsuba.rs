@@ -2,8 +2,8 @@
 //! far away and a uniform sky. Skipped where there is no Python with mitsuba, or no LLVM for it.
 
 use brdf_core::{AnyBrdf, Family, ModelParameters};
-use brdf_fit::export::{ExportOptions, Fitted, Material, Target, export};
-use brdf_tests::run_python;
+use brdf_fit::export::{ExportOptions, Target, export};
+use brdf_tests::{made_up_material, run_python};
 use brdf_viewer::solid::surface::{Light, Pixels, Sky, lamp_direction, shade};
 use serde_json::{Value, json};
 
@@ -44,22 +44,6 @@ fn colours() -> [AnyBrdf; 3] {
     ]
 }
 
-fn material(brdfs: &[AnyBrdf; 3]) -> Material {
-    let fits = brdfs
-        .iter()
-        .zip([0.62, 0.55, 0.46])
-        .map(|(brdf, um)| Fitted {
-            file: "made-up.csv".to_owned(),
-            wavelength_um: Some(um),
-            brdf: *brdf,
-            e_percent: 1.0,
-            psi_max_deg: 70.0,
-        });
-    Material {
-        fits: fits.collect(),
-    }
-}
-
 /// Mitsuba's picture: the mean of each value and its standard error, row by row.
 fn rendered(lamp: [f64; 3], light: Light) -> Option<[Vec<f64>; 2]> {
     let folder = tempfile::tempdir().unwrap();
@@ -69,7 +53,13 @@ fn rendered(lamp: [f64; 3], light: Light) -> Option<[Vec<f64>; 2]> {
         ..ExportOptions::default()
     };
     let mut text = Vec::new();
-    export(&material(&colours()), Target::Mitsuba, &options, &mut text).unwrap();
+    export(
+        &made_up_material(&colours()),
+        Target::Mitsuba,
+        &options,
+        &mut text,
+    )
+    .unwrap();
     std::fs::write(&plugin, text).unwrap();
     let step = json!({
         "do": "ball", "path": plugin, "side": SIDE, "lamp": lamp,

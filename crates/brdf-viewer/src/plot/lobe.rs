@@ -1,7 +1,8 @@
 //! The lobe of an incidence in three dimensions.
 
-use egui::{Align2, EventFilter, FontId, Key, Rect, Response, Sense, Shape, Ui, WidgetInfo};
+use egui::{Align2, FontId, Key, Rect, Response, Sense, Shape, Ui, WidgetInfo};
 
+use super::navigation::{arrow_presses, presses};
 use crate::intent::Intent;
 use crate::solid::{Camera, Inks, LobeScene, mesh, project, texts};
 use crate::state::State;
@@ -92,16 +93,9 @@ fn moved(ui: &Ui, response: &Response, camera: Camera) -> Camera {
 }
 
 fn by_keys(ui: &Ui, response: &Response, camera: Camera) -> Camera {
-    let filter = EventFilter {
-        horizontal_arrows: true,
-        vertical_arrows: true,
-        ..EventFilter::default()
-    };
-    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-    let presses = |key: Key| ui.input(|input| f64::from(input.num_presses(key) as u32));
-    let yaw = presses(Key::ArrowLeft) - presses(Key::ArrowRight);
-    let pitch = presses(Key::ArrowUp) - presses(Key::ArrowDown);
-    let zoom = presses(Key::Plus) + presses(Key::Equals) - presses(Key::Minus);
+    let [right, up] = arrow_presses(ui, response);
+    let (yaw, pitch) = (-right, up);
+    let zoom = presses(ui, Key::Plus) + presses(ui, Key::Equals) - presses(ui, Key::Minus);
     if yaw == 0.0 && pitch == 0.0 && zoom == 0.0 {
         return camera;
     }

@@ -1,5 +1,6 @@
-//! Zooming with the wheel, and limits of panning and zooming.
+//! Zooming with the wheel, limits of panning and zooming, and the keys that move a picture.
 
+use egui::{EventFilter, Key, Response, Ui};
 use egui_plot::PlotUi;
 
 /// How much a turn of the wheel by one point zooms.
@@ -46,6 +47,26 @@ fn limited(low: f64, high: f64, [home_low, home_high]: [f64; 2]) -> Option<[f64;
     let limited = [centre - 0.5 * limited_width, centre + 0.5 * limited_width];
     let moved = (limited[0] - low).abs().max((limited[1] - high).abs());
     (moved > 1e-9 * limited_width).then_some(limited)
+}
+
+/// How often the arrow keys were pressed in this frame, to the right and upwards; a widget that has the focus
+/// keeps them from moving it.
+pub(super) fn arrow_presses(ui: &Ui, response: &Response) -> [f64; 2] {
+    let filter = EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..EventFilter::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    [
+        presses(ui, Key::ArrowRight) - presses(ui, Key::ArrowLeft),
+        presses(ui, Key::ArrowUp) - presses(ui, Key::ArrowDown),
+    ]
+}
+
+/// How often a key was pressed in this frame.
+pub(super) fn presses(ui: &Ui, key: Key) -> f64 {
+    ui.input(|input| f64::from(input.num_presses(key) as u32))
 }
 
 #[cfg(test)]

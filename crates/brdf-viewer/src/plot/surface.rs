@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use egui::{
-    Color32, ColorImage, EventFilter, Key, Rect, Response, Sense, TextureHandle, TextureOptions,
-    Ui, Vec2, WidgetInfo, pos2, vec2,
+    Color32, ColorImage, Rect, Response, Sense, TextureHandle, TextureOptions, Ui, Vec2,
+    WidgetInfo, pos2, vec2,
 };
 
+use super::navigation::arrow_presses;
 use crate::intent::Intent;
 use crate::state::State;
 use crate::state::solid::SolidView;
@@ -99,15 +100,9 @@ fn lamp_move(ui: &Ui, response: &Response) -> [f64; 2] {
     let drag = response.drag_delta();
     let mut by = [drag.x, -drag.y].map(|points| f64::from(points) * DEG_PER_POINT);
     if response.has_focus() {
-        let filter = EventFilter {
-            horizontal_arrows: true,
-            vertical_arrows: true,
-            ..EventFilter::default()
-        };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        let presses = |key: Key| ui.input(|input| f64::from(input.num_presses(key) as u32));
-        by[0] += DEG_PER_KEY * (presses(Key::ArrowRight) - presses(Key::ArrowLeft));
-        by[1] += DEG_PER_KEY * (presses(Key::ArrowUp) - presses(Key::ArrowDown));
+        let [right, up] = arrow_presses(ui, response);
+        by[0] += DEG_PER_KEY * right;
+        by[1] += DEG_PER_KEY * up;
     }
     by
 }

@@ -9,6 +9,7 @@
 pub mod coverage;
 pub mod data;
 pub mod picture;
+pub mod planning;
 mod python;
 pub mod samples;
 pub mod textbook;

@@ -47,6 +47,8 @@ mod inference;
 mod model;
 mod objective;
 pub mod output;
+#[cfg(feature = "planning")]
+pub mod planning;
 #[cfg(feature = "plot")]
 pub mod plot;
 mod progress;

@@ -8,6 +8,7 @@ use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::inference::{Hint, Warning};
 use crate::objective::ObjectiveError;
+use crate::planning::PlanError;
 use crate::read::{ReadError, Remedy};
 use crate::report::DocumentError;
 use crate::tradeoff::fitting::TradeoffError;
@@ -81,6 +82,19 @@ pub(super) fn cube_output() -> &'static str {
 pub(super) fn tradeoff(error: &TradeoffError) -> String {
     match error {
         TradeoffError::Fit(error) => fit(error),
+        _ => error.to_string(),
+    }
+}
+
+/// Why readings cannot be planned.
+pub(super) fn plan(error: &PlanError) -> String {
+    match error {
+        PlanError::Fit(error) => fit(error),
+        PlanError::Wavelengths(_) => with_hint(error, "--wavelength UM chooses one"),
+        PlanError::NoSetting => with_hint(
+            error,
+            "--incidence, --view, --largest-incidence, --largest-view, --step-incidence, --step-view",
+        ),
         _ => error.to_string(),
     }
 }

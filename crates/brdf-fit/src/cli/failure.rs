@@ -13,6 +13,7 @@ use crate::export::{ExportError, MaterialError, SelectionError};
 use crate::fit::FitError;
 use crate::format::listed;
 use crate::output::{TakenError, WriteError};
+use crate::planning::PlanError;
 use crate::plot::FolderError;
 use crate::plot::PlotError;
 use crate::read::ReadError;
@@ -58,6 +59,14 @@ pub(super) enum Failure {
     CubeModel,
     #[error("{}", explain::tradeoff(.0))]
     Tradeoff(#[from] TradeoffError),
+    #[error("{}", explain::plan(.0))]
+    Plan(#[from] PlanError),
+    /// A scan without the wavelength that is planned for.
+    #[error("no scan of {wavelength_um} um: expected one of {}", listed(.found, ", "))]
+    NoScan {
+        wavelength_um: f64,
+        found: Vec<String>,
+    },
     /// A failure that concerns one file, or one wavelength of it.
     #[error("{place}: {failure}")]
     At { place: String, failure: Box<Self> },

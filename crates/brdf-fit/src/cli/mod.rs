@@ -12,8 +12,10 @@ mod figures;
 mod fit;
 mod interrupt;
 mod outcome;
+mod plan;
 mod problems;
 mod progress;
+mod scene;
 mod stream;
 mod threads;
 mod trade;
@@ -38,6 +40,7 @@ enum Command {
     Fit(Box<fit::Arguments>),
     Export(export::Arguments),
     Trade(trade::Arguments),
+    Plan(plan::Arguments),
     Figures(figures::Arguments),
     Completions(completions::Arguments),
 }
@@ -52,6 +55,11 @@ Examples:
     brdf trade --model fit.json --tolerance 1e-4
   Compare the ways to fit a scan:
     brdf trade fit scan.csv --n 1.5
+  List the readings that a paint needs, for f_r within 5 % up to 70 deg:
+    brdf plan --material paint --incidence 0:70 --view 0:80 --tolerance 0.05
+  Ask what a scan still lacks, and which of its readings were needed:
+    brdf plan scan.csv
+    brdf plan --review scan.csv
   Draw the figures of the paper into a folder:
     brdf figures FOLDER
   Complete the options of brdf in bash:
@@ -66,6 +74,7 @@ pub fn brdf() -> ExitCode {
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
         Command::Trade(arguments) => trade::run(&arguments),
+        Command::Plan(arguments) => plan::run(&arguments),
         Command::Figures(arguments) => figures::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };

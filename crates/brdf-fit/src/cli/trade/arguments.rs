@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::values::{CoordinatesArgument, Range, Row, positive};
+use super::values::{CoordinatesArgument, Row};
+use crate::cli::scene::{SceneArguments, positive};
 use crate::model::Model;
 use crate::scan::RefractiveIndex;
 
@@ -54,17 +55,8 @@ pub(super) struct Evaluation {
     #[arg(long, value_name = "ROW")]
     pub(super) sample: Option<Row>,
 
-    /// Incidence angles psi of the scene, in degrees, as FROM:TO or as a single angle
-    #[arg(long, value_name = "RANGE", default_value = "0:85")]
-    pub(super) incidence: Range,
-
-    /// Magnitudes of the view angle theta of the scene, in degrees, as FROM:TO or as a single angle
-    #[arg(long, value_name = "RANGE", default_value = "0:85")]
-    pub(super) view: Range,
-
-    /// Restrict the view directions of the scene to the plane of incidence
-    #[arg(long)]
-    pub(super) in_plane: bool,
+    #[command(flatten)]
+    pub(super) scene: SceneArguments,
 
     /// The form in which the scene supplies its directions
     #[arg(

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use brdf_core::scene::{Azimuth, Domain, Scene};
+use brdf_core::scene::Scene;
 use brdf_core::{AnyBrdf, ModelParameters};
 
 use super::Compared;
@@ -92,19 +92,8 @@ impl Evaluation {
     }
 
     fn scene(&self) -> Result<Scene, Failure> {
-        let azimuth = if self.in_plane {
-            Azimuth::InPlane
-        } else {
-            Azimuth::Full
-        };
-        let (incidence, view) = (self.incidence, self.view);
-        let domain = Domain::new(
-            (incidence.from, incidence.to),
-            (view.from, view.to),
-            azimuth,
-        )?;
         Ok(Scene {
-            domain,
+            domain: self.scene.domain()?,
             coordinates: self.coordinates.into(),
             tolerance: self.tolerance,
             evaluations: self.evaluations,

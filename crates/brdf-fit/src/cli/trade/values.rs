@@ -56,34 +56,3 @@ impl FromStr for Row {
         })
     }
 }
-
-/// A range of angles, in radians.
-#[derive(Clone, Copy)]
-pub(super) struct Range {
-    pub(super) from: f64,
-    pub(super) to: f64,
-}
-
-impl FromStr for Range {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let degrees = |text: &str| {
-            let angle: f64 = text.parse().ok()?;
-            (0.0..90.0).contains(&angle).then(|| angle.to_radians())
-        };
-        let (from, to) = text.split_once(':').unwrap_or((text, text));
-        match (degrees(from), degrees(to)) {
-            (Some(from), Some(to)) if from <= to => Ok(Self { from, to }),
-            _ => Err("expected degrees from 0 to below 90, as FROM:TO".to_owned()),
-        }
-    }
-}
-
-/// A positive number.
-pub(super) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("expected a number above 0".to_owned()),
-    }
-}

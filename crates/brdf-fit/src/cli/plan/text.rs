@@ -1,0 +1,305 @@
+//! A plan and a review as text.
+
+use std::fmt::Write as _;
+
+use brdf_core::scene::Azimuth;
+
+use crate::format::{counted, in_degrees, shortest, two_digits};
+use crate::planning::{
+    Advice, Gap, MeasurementPlan, PlanOptions, PlannedReading, Prediction, REVIEW_WITHIN, Region,
+    Review, Setting,
+};
+use crate::report::{Column, Row, Table};
+use crate::scan::Measurements;
+
+/// The rms error of ln f_r as a percentage of f_r.
+pub(super) fn percent(error: f64) -> String {
+    format!("{} %", two_digits(100.0 * error.exp_m1()))
+}
+
+/// An angle in degrees, without the digits of rounding.
+pub(super) fn rounded_deg(radians: f64) -> String {
+    // Minus zero is zero.
+    let degrees = (1e6 * in_degrees(radians)).round() / 1e6 + 0.0;
+    shortest(degrees)
+}
+
+/// The directions of the scene and the tolerance.
+pub(super) fn scene(options: &PlanOptions) -> String {
+    let range =
+        |(from, to): (f64, f64)| format!("{} ... {} deg", rounded_deg(from), rounded_deg(to));
+    let domain = &options.scene;
+    let azimuth = match domain.azimuth() {
+        Azimuth::InPlane => "in the plane of incidence",
+        Azimuth::Full => "all azimuths",
+    };
+    format!(
+        "psi {}, theta {}, {azimuth}; tolerance {}",
+        range(domain.incidence()),
+        range(domain.view()),
+        percent(options.tolerance.ln_1p())
+    )
+}
+
+/// What is planned.
+pub(super) fn plan(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOptions) -> String {
+    let mut text = String::new();
+    line(&mut text, "scene", &scene(options));
+    line(&mut text, "so far", &so_far(plan, name, options));
+    line(&mut text, "error", &errors_now(plan));
+    line(&mut text, "advice", &advice(plan, options));
+    if plan.readings.is_empty() {
+        return text;
+    }
+    let _ = write!(text, "\n{}", table(&plan.readings, &plan.now).text());
+    text.push_str(
+        "error: predicted rms error of f_r over the scene after the readings up to this one; k2, kD, k1, n - 1: their\n\
+         predicted standard errors; rank: the order in which the readings were chosen\n",
+    );
+    text
+}
+
+fn line(text: &mut String, label: &str, content: &str) {
+    let _ = writeln!(text, "{label:<8}  {content}");
+}
+
+fn so_far(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOptions) -> String {
+    let at = &plan.parameters;
+    let [k2, kd, k1, n] = [at.k2, at.kd, at.k1, at.n].map(two_digits);
+    let parameters = format!("k2 {k2}, kD {kd}, k1 {k1}, n {n}");
+    let Some(name) = name else {
+        return format!(
+            "no reading; likely for the material \"{}\": {parameters}",
+            options.material
+        );
+    };
+    let mut text = format!(
+        "{name}, {}; most probable: {parameters}",
+        counted(plan.used, "reading")
+    );
+    if plan.left_out > 0 {
+        let _ = write!(
+            text,
+            "; {} not above zero without influence",
+            counted(plan.left_out, "reading")
+        );
+    }
+    text
+}
+
+fn errors_now(plan: &MeasurementPlan) -> String {
+    let mut text = format!("predicted {} rms over the scene", percent(plan.now.error));
+    if let Some(error) = plan.cross_validated {
+        let _ = write!(
+            text,
+            ", {} for each reading from the others",
+            percent(error)
+        );
+    }
+    let _ = write!(
+        text,
+        "; every setting of the instrument would leave {}",
+        percent(plan.limit)
+    );
+    text
+}
+
+fn advice(plan: &MeasurementPlan, options: &PlanOptions) -> String {
+    match plan.advice {
+        Advice::Enough => "enough: the error is within the tolerance, and two further readings would hardly change \
+                           it"
+        .to_owned(),
+        Advice::Misfit(region) => misfit(region),
+        _ => {
+            let last = plan.readings.last();
+            let seconds = last.map_or(0.0, |reading| reading.seconds);
+            let error = last.map_or(plan.now.error, |reading| reading.prediction.error);
+            let reached = if error <= options.tolerance.ln_1p() {
+                ""
+            } else {
+                ", still above the tolerance: plan again with their values"
+            };
+            format!(
+                "take {} in {}: predicted error {}{reached}",
+                counted(plan.readings.len(), "reading"),
+                duration(seconds),
+                percent(error)
+            )
+        }
+    }
+}
+
+fn misfit(region: Region) -> String {
+    match region {
+        Region::Everywhere => {
+            "more readings of this kind will not help: what is left is the misfit of the model, no \
+                               direction more than others"
+                .to_owned()
+        }
+        _ => format!(
+            "more readings of this kind will not help: what is left is the misfit of the model, most of all at {region}"
+        ),
+    }
+}
+
+/// A time in minutes or hours.
+fn duration(seconds: f64) -> String {
+    if seconds < 5400.0 {
+        format!("{} min", (seconds / 60.0).ceil())
+    } else {
+        format!("{:.1} h", seconds / 3600.0)
+    }
+}
+
+fn table(readings: &[PlannedReading], now: &Prediction) -> Table {
+    let columns = [
+        Column::right("psi", 5),
+        Column::right("theta", 6),
+        Column::right("phi", 5),
+        Column::right("rank", 5),
+        Column::right("error", 7),
+        Column::right("k2", 7),
+        Column::right("kD", 7),
+        Column::right("k1", 7),
+        Column::right("n - 1", 7),
+        Column::right("after", 8),
+    ];
+    let before = [String::new(), String::new(), String::new(), String::new()];
+    let before = before
+        .into_iter()
+        .chain(predicted(now))
+        .chain(["0 min".to_owned()]);
+    let rows = readings.iter().map(|reading| {
+        let Setting { psi, theta, phi } = reading.setting;
+        let angles = [psi, theta, phi].map(rounded_deg);
+        let cells = angles.into_iter().chain([reading.rank.to_string()]);
+        let cells = cells.chain(predicted(&reading.prediction));
+        Row::new(cells.chain([duration(reading.seconds)]))
+    });
+    Table {
+        caption: String::new(),
+        columns: columns.into(),
+        rows: std::iter::once(Row::new(before)).chain(rows).collect(),
+        notes: Vec::new(),
+    }
+}
+
+fn predicted(prediction: &Prediction) -> impl Iterator<Item = String> {
+    let each = std::iter::once(prediction.error).chain(prediction.deviations);
+    // Beyond a factor of ten a parameter is not known.
+    each.map(|error| {
+        if error > 10_f64.ln() {
+            "-".to_owned()
+        } else {
+            percent(error)
+        }
+    })
+}
+
+/// What a scan had and lacks.
+pub(super) fn review(
+    review: &Review,
+    scan: &Measurements,
+    name: &str,
+    options: &PlanOptions,
+) -> String {
+    let mut text = String::new();
+    let settings: Vec<Setting> = scan.readings().iter().map(Setting::from).collect();
+    let instrument = &options.instrument;
+    let time = |settings: &[Setting]| {
+        let order = instrument.order(settings);
+        let driven: Vec<Setting> = order.iter().map(|&i| settings[i]).collect();
+        duration(instrument.elapsed(&driven).last().copied().unwrap_or(0.0))
+    };
+    let readings = counted(review.used, "reading");
+    line(
+        &mut text,
+        "scan",
+        &format!("{name}, {readings}, {}", time(&settings)),
+    );
+    if review.left_out > 0 {
+        let left_out = counted(review.left_out, "reading");
+        line(
+            &mut text,
+            "",
+            &format!("{left_out} not above zero without influence"),
+        );
+    }
+    let error = percent(review.error);
+    line(
+        &mut text,
+        "error",
+        &format!("{error} rms of theory/measured over them (three+n, relative weights)"),
+    );
+    for within in REVIEW_WITHIN {
+        let sentence = match review.needed(within) {
+            Some(count) => {
+                let steps = &review.steps[..count];
+                let chosen: Vec<Setting> =
+                    steps.iter().map(|step| settings[step.reading]).collect();
+                format!(
+                    "{} in {} stay within {within} times that error",
+                    counted(count, "reading"),
+                    time(&chosen)
+                )
+            }
+            None => format!(
+                "more than {} are needed to stay within {within} times that error",
+                counted(review.steps.len(), "reading")
+            ),
+        };
+        line(&mut text, "needed", &sentence);
+    }
+    for gap in &review.gaps {
+        line(&mut text, "missing", &gap_text(gap));
+    }
+    if review.gaps.is_empty() {
+        line(&mut text, "missing", "nothing of the scene");
+    }
+    let _ = write!(text, "\n{}", order_table(review, &settings).text());
+    text.push_str(
+        "error: rms of theory/measured over all readings, of the fit to those up to this one\n",
+    );
+    text
+}
+
+fn gap_text(gap: &Gap) -> String {
+    match gap {
+        Gap::Incidence { scan, scene } => format!(
+            "incidences beyond {} deg: the scene has them up to {} deg",
+            rounded_deg(*scan),
+            rounded_deg(*scene)
+        ),
+        Gap::View { scan, scene } => format!(
+            "views beyond {} deg: the scene has them up to {} deg",
+            rounded_deg(*scan),
+            rounded_deg(*scene)
+        ),
+        Gap::Region(region) => format!("a reading at {region}"),
+    }
+}
+
+/// The readings that were needed for the smallest multiple, in the order in which they were chosen.
+fn order_table(review: &Review, settings: &[Setting]) -> Table {
+    let count = review
+        .needed(REVIEW_WITHIN[0])
+        .unwrap_or(review.steps.len());
+    let rows = review.steps[..count].iter().enumerate().map(|(i, step)| {
+        let Setting { psi, theta, phi } = settings[step.reading];
+        let [psi, theta, phi] = [psi, theta, phi].map(rounded_deg);
+        let error = step.error.map_or_else(|| "-".to_owned(), percent);
+        Row::new([(i + 1).to_string(), psi, theta, phi, error])
+    });
+    Table {
+        caption: String::new(),
+        columns: vec![
+            Column::right("", 3),
+            Column::right("psi", 8),
+            Column::right("theta", 8),
+            Column::right("phi", 8),
+            Column::right("error", 8),
+        ],
+        rows: rows.collect(),
+        notes: Vec::new(),
+    }
+}

@@ -1,0 +1,123 @@
+//! When to stop: the tolerance is kept, or what is left is the misfit of the model.
+
+use std::fmt;
+
+use super::setting::Setting;
+use super::state::State;
+
+/// Two further readings change the error where they lower it by more than this fraction.
+pub(super) const WORTHWHILE: f64 = 0.05;
+
+/// Fewer readings say nothing about the errors.
+const FEWEST: usize = 6;
+
+/// A region stands out where its mean square error is this many times that of all readings.
+const STANDS_OUT: f64 = 1.5;
+
+/// The fewest readings of a region that stands out.
+const FEWEST_IN_REGION: usize = 2;
+
+/// Whether further readings are worth their time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Advice {
+    /// Further readings lower the error.
+    Continue,
+    /// The error over the scene, predicted and cross-validated, is within the tolerance, and two further readings
+    /// would not change it.
+    Enough,
+    /// The error is above the tolerance, and more readings would hardly lower it: the model misses the surface,
+    /// most of all in a region.
+    Misfit(Region),
+}
+
+/// A part of the directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Region {
+    /// Within 15 deg of the source.
+    Retro,
+    /// Within 15 deg of the mirror direction.
+    Mirror,
+    /// Incidence or view beyond 65 deg.
+    Grazing,
+    /// More than 15 deg of azimuth out of the plane of incidence.
+    OutOfPlane,
+    /// No part more than another.
+    Everywhere,
+}
+
+impl Region {
+    const PARTS: [Self; 4] = [Self::Retro, Self::Mirror, Self::Grazing, Self::OutOfPlane];
+
+    /// Whether a setting is in the region.
+    pub(super) fn contains(self, setting: &Setting) -> bool {
+        let near = 15_f64.to_radians();
+        let grazing = 65_f64.to_radians();
+        match self {
+            Self::Retro => setting.from_source() < near,
+            Self::Mirror => setting.from_mirror() < near,
+            Self::Grazing => setting.psi > grazing || setting.theta.abs() > grazing,
+            Self::OutOfPlane => setting.phi.sin().abs() > near.sin(),
+            Self::Everywhere => true,
+        }
+    }
+
+    /// The region where the model misses the readings most.
+    pub(super) fn worst(state: &State) -> Self {
+        let residuals = state.residuals();
+        let mean = |region: Self| {
+            let own = state.readings.iter().zip(&residuals);
+            let squares: Vec<f64> = own
+                .filter(|(reading, _)| region.contains(&reading.site.setting))
+                .map(|(_, residual)| residual * residual)
+                .collect();
+            let enough = squares.len() >= FEWEST_IN_REGION;
+            enough.then(|| squares.iter().sum::<f64>() / squares.len() as f64)
+        };
+        let all = mean(Self::Everywhere).unwrap_or(0.0);
+        let parts = Self::PARTS
+            .into_iter()
+            .filter_map(|part| Some((part, mean(part)?)));
+        let worst = parts.max_by(|a, b| a.1.total_cmp(&b.1));
+        worst
+            .filter(|(_, square)| *square > STANDS_OUT * all)
+            .map_or(Self::Everywhere, |(part, _)| part)
+    }
+}
+
+impl fmt::Display for Region {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Retro => "the direction of the source (retroreflection)",
+            Self::Mirror => "the mirror direction",
+            Self::Grazing => "grazing angles (beyond 65 deg)",
+            Self::OutOfPlane => "views outside the plane of incidence",
+            Self::Everywhere => "no direction more than others",
+        })
+    }
+}
+
+impl Advice {
+    /// From the predicted errors: now, after two more readings, and after all that the instrument can take.
+    pub(super) fn new(
+        state: &State,
+        now: f64,
+        after_two: f64,
+        after_all: f64,
+        tolerance: f64,
+    ) -> Self {
+        if state.readings.len() < FEWEST {
+            return Self::Continue;
+        }
+        let validated = state.cross_validated().unwrap_or(f64::INFINITY);
+        let is_settled = after_two > (1.0 - WORTHWHILE) * now;
+        if now.max(validated) <= tolerance && is_settled {
+            return Self::Enough;
+        }
+        if now > tolerance && is_settled && after_all > tolerance {
+            return Self::Misfit(Region::worst(state));
+        }
+        Self::Continue
+    }
+}

@@ -5,7 +5,7 @@ use std::fmt;
 use super::setting::Setting;
 use super::state::State;
 
-/// Two further readings change the error where they lower it by more than this fraction.
+/// Further readings change the error where they lower it by more than this fraction.
 pub(super) const WORTHWHILE: f64 = 0.05;
 
 /// Fewer readings say nothing about the errors.
@@ -26,8 +26,8 @@ pub enum Advice {
     /// The error over the scene, predicted and cross-validated, is within the tolerance, and two further readings
     /// would not change it.
     Enough,
-    /// The error is above the tolerance, and more readings would hardly lower it: the model misses the surface,
-    /// most of all in a region.
+    /// The error, predicted or cross-validated, is above the tolerance, and no readings of the instrument would lower
+    /// it: the model misses the surface, most of all in a region.
     Misfit(Region),
 }
 
@@ -99,25 +99,20 @@ impl fmt::Display for Region {
 }
 
 impl Advice {
-    /// From the predicted errors: now, after two more readings, and after all that the instrument can take.
-    pub(super) fn new(
-        state: &State,
-        now: f64,
-        after_two: f64,
-        after_all: f64,
-        tolerance: f64,
-    ) -> Self {
+    /// From the predicted errors: now, after two more readings, and the smallest that readings of the instrument leave.
+    pub(super) fn new(state: &State, now: f64, after_two: f64, limit: f64, tolerance: f64) -> Self {
         if state.readings.len() < FEWEST {
             return Self::Continue;
         }
         let validated = state.cross_validated().unwrap_or(f64::INFINITY);
-        let is_settled = after_two > (1.0 - WORTHWHILE) * now;
-        if now.max(validated) <= tolerance && is_settled {
-            return Self::Enough;
+        let is_within = now.max(validated) <= tolerance;
+        let is_unchanged = |later: f64| later > (1.0 - WORTHWHILE) * now;
+        if is_within && is_unchanged(after_two) {
+            Self::Enough
+        } else if !is_within && is_unchanged(limit) {
+            Self::Misfit(Region::worst(state))
+        } else {
+            Self::Continue
         }
-        if now > tolerance && is_settled && after_all > tolerance {
-            return Self::Misfit(Region::worst(state));
-        }
-        Self::Continue
     }
 }

@@ -3,7 +3,7 @@
 use brdf_core::ModelParameters;
 use brdf_core::scene::Domain;
 
-use super::advice::Advice;
+use super::advice::{Advice, WORTHWHILE};
 use super::criterion::Criterion;
 use super::error::PlanError;
 use super::errors::ErrorModel;
@@ -262,15 +262,18 @@ impl PlanOptions {
         self.tolerance.ln_1p()
     }
 
-    /// How many of the readings are worth their time: up to the tolerance, and to where two more change little.
+    /// How many of the readings are worth their time: up to the tolerance where two more change little, and no more
+    /// than all the others together change little.
     fn kept(&self, errors: &[f64], scale: f64) -> usize {
+        let errors = &errors[..errors.len().min(self.most)];
+        let lowest = errors.iter().copied().fold(f64::INFINITY, f64::min);
         let is_last = |i: usize| {
-            let later = errors.get(i + 2).copied().unwrap_or(0.0);
-            let is_settled = later > (1.0 - super::advice::WORTHWHILE) * errors[i];
-            is_settled && scale * errors[i] <= self.log_tolerance()
+            let is_unchanged = |later: f64| later > (1.0 - WORTHWHILE) * errors[i];
+            let after_two = errors.get(i + 2).is_none_or(|later| is_unchanged(*later));
+            is_unchanged(lowest) || (after_two && scale * errors[i] <= self.log_tolerance())
         };
         let last = (0..errors.len()).find(|i| is_last(*i));
-        last.map_or(errors.len(), |last| last + 1).min(self.most)
+        last.map_or(errors.len(), |last| last + 1)
     }
 }
 

@@ -98,7 +98,7 @@ fn errors_now(plan: &MeasurementPlan) -> String {
     }
     let _ = write!(
         text,
-        "; every setting of the instrument would leave {}",
+        "; the best that readings of this instrument leave: {}",
         percent(plan.limit)
     );
     text

@@ -66,8 +66,9 @@ impl Products {
             y[..range.len()].copy_from_slice(&rows.y[range.clone()]);
             let mut columns: [&[f64; BLOCK]; 5] =
                 [&block.u, &block.a, &block.by[0], &block.by[1], &block.by[2]];
-            let mut own = [[0.0; BLOCK]; 5];
+            let mut own;
             if let Some(factors) = rows.factors {
+                own = [[0.0; BLOCK]; 5];
                 for i in (0..5).filter(|i| used[*i]) {
                     let scaled = columns[i].iter().zip(&factors[range.clone()]);
                     for (own, (x, factor)) in own[i].iter_mut().zip(scaled) {

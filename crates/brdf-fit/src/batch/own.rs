@@ -139,8 +139,14 @@ pub(super) struct OwnSearch<'a> {
 impl<'a> OwnSearch<'a> {
     pub(super) fn new(plan: &'a BatchPlan) -> Self {
         let table = plan.own();
+        // Where the columns of the plan are no polynomials between two widths, E may have minima there that
+        // no slope at the widths shows.
+        let is_smooth = plan
+            .table
+            .as_ref()
+            .is_some_and(|table| table.ends_in_minima);
         let along_k1 = match plan.model.fixed_weights() {
-            _ if !plan.has_lobe() || !table.grid.is_along_k1() => None,
+            _ if !is_smooth => None,
             [None, None] => Some(true),
             [None, Some(0.0)] => Some(false),
             _ => None,

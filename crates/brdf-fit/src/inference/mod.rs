@@ -22,6 +22,7 @@ mod model_comparison;
 mod noise;
 mod physics;
 mod refit;
+mod restricted;
 mod spread;
 mod terms;
 #[cfg(test)]

@@ -143,7 +143,18 @@ impl Objective {
         at: &ModelParameters,
         derivatives: [bool; 3],
         rows: Range<usize>,
-        mut take: impl FnMut(Range<usize>, &Block),
+        take: impl FnMut(Range<usize>, &Block),
+    ) {
+        self.give_blocks(at, derivatives, rows, &mut Call(take));
+    }
+
+    /// [`for_blocks`](Self::for_blocks) to what is compiled with them, for the present processor.
+    pub(crate) fn give_blocks<T: TakeBlock>(
+        &self,
+        at: &ModelParameters,
+        derivatives: [bool; 3],
+        rows: Range<usize>,
+        to: &mut T,
     ) {
         with_terms!(self.family, at.k1, at.p, |facet, shadowing| Blocks {
             objective: self,
@@ -152,7 +163,7 @@ impl Objective {
             n: at.n,
             derivatives,
             rows,
-            take: &mut take,
+            to,
         });
     }
 
@@ -164,7 +175,7 @@ impl Objective {
         n: f64,
         [by_k1, by_n, by_p]: [bool; 3],
         rows: Range<usize>,
-        take: &mut impl FnMut(Range<usize>, &Block),
+        to: &mut impl TakeBlock,
     ) {
         let dielectric = Dielectric::new(n);
         let mut start = rows.start;
@@ -195,7 +206,7 @@ impl Objective {
                 }
             }
             start = range.end;
-            take(range, &block);
+            to.take(range, &block);
         }
     }
 
@@ -306,7 +317,22 @@ impl<F: FacetDistribution, S: Shadowing, W: WithLobe> WithSimd for WholeLobe<'_,
     }
 }
 
-/// [`Objective::for_blocks`].
+/// Takes the columns of some rows, block by block.
+pub(crate) trait TakeBlock {
+    fn take(&mut self, rows: Range<usize>, block: &Block);
+}
+
+/// Calls a function for each block.
+struct Call<F>(F);
+
+impl<F: FnMut(Range<usize>, &Block)> TakeBlock for Call<F> {
+    #[inline(always)]
+    fn take(&mut self, rows: Range<usize>, block: &Block) {
+        self.0(rows, block);
+    }
+}
+
+/// [`Objective::give_blocks`].
 struct Blocks<'a, F, S, T> {
     objective: &'a Objective,
     facet: F,
@@ -314,14 +340,14 @@ struct Blocks<'a, F, S, T> {
     n: f64,
     derivatives: [bool; 3],
     rows: Range<usize>,
-    take: &'a mut T,
+    to: &'a mut T,
 }
 
 impl<F, S, T> WithSimd for Blocks<'_, F, S, T>
 where
     F: FacetDistribution,
     S: Shadowing,
-    T: FnMut(Range<usize>, &Block),
+    T: TakeBlock,
 {
     type Output = ();
 
@@ -334,7 +360,7 @@ where
             self.n,
             self.derivatives,
             self.rows,
-            self.take,
+            self.to,
         );
     }
 }

@@ -227,7 +227,7 @@ impl<'a> OwnSearch<'a> {
         let points = self.table.grid.len();
         let products = &self.products.as_slice()[2 * points * i..2 * points * (i + 1)];
         let (squares, mixed) = products.split_at(points);
-        let plain = PROCESSOR.dispatch(Errors {
+        let plain = PROCESSOR.dispatch(OfGrid {
             scan,
             has_diffuse,
             squares,
@@ -315,7 +315,7 @@ impl OwnTable {
 
 /// E of each point of the grid with the best weights, and the scalar product of y and the unit column
 /// beside the diffuse one; E without a lobe.
-struct Errors<'a> {
+struct OfGrid<'a> {
     scan: &'a OwnScan,
     has_diffuse: bool,
     squares: &'a [f64],
@@ -325,7 +325,7 @@ struct Errors<'a> {
     beside: &'a mut [f64],
 }
 
-impl WithSimd for Errors<'_> {
+impl WithSimd for OfGrid<'_> {
     type Output = f64;
 
     #[inline(always)]
@@ -357,7 +357,7 @@ impl WithSimd for Errors<'_> {
             let lobe = positive(*uy);
             let alone = lobe * lobe / if *uu > 0.0 { *uu } else { 1.0 };
             // kD < 0 where the lobe takes more than there is.
-            let without_diffuse = !(ay * rest >= ua * along) || !is_apart;
+            let without_diffuse = ay * rest < ua * along || !is_apart;
             let with_lobe = if without_diffuse { alone } else { both };
             let has_lobe = if is_apart { along > 0.0 } else { alone > plain };
             *error = 1.0 - if has_lobe { with_lobe } else { plain };

@@ -244,8 +244,8 @@ impl<const P: usize> Restricted<P> {
                 let sums = &mut self.patches[*patch];
                 sums.information += sum(&information);
                 sums.residual += sum(&residual);
-                for c in 0..P {
-                    sums.slopes[c] += sum(&slopes[c]);
+                for (own, slopes) in sums.slopes.iter_mut().zip(&slopes) {
+                    *own += sum(slopes);
                 }
             }
             for c in 0..P {
@@ -351,8 +351,8 @@ impl<const P: usize> Block<P> {
         for Piece { patch, rows } in &self.pieces {
             let taken = &taken[*patch];
             for i in rows.clone() {
-                for c in 0..P {
-                    of_slopes[c][i] = taken.slopes[c];
+                for (column, slope) in of_slopes.iter_mut().zip(&taken.slopes) {
+                    column[i] = *slope;
                 }
                 of_residual[i] = taken.residual;
                 loss[i] = taken.loss;

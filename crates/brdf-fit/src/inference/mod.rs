@@ -22,7 +22,6 @@ mod model_comparison;
 mod noise;
 mod physics;
 mod refit;
-mod restricted;
 mod spread;
 mod terms;
 #[cfg(test)]

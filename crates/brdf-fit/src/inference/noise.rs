@@ -4,9 +4,8 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-use super::restricted::Common;
 use super::terms::{Grid, Readings, Source};
-use super::variance_components::{Components, INDEPENDENT, Terms, common_errors, estimate};
+use super::variance_components::{Common, Components, INDEPENDENT, Terms, common_errors, estimate};
 
 /// The significance level of each test.
 pub const TEST_LEVEL: f64 = 0.01;

@@ -231,12 +231,16 @@ impl<const P: usize> Readings<P> {
         };
         let terms = Terms {
             rows: self.rows.iter().map(term).collect(),
-            // Independent errors have no patches.
-            patches: vec![Patch {
-                rows: 0..self.rows.len(),
-                incidence: 0,
-            }],
-            incidences: 1,
+            patches: self
+                .rows
+                .iter()
+                .enumerate()
+                .map(|(i, row)| Patch {
+                    rows: i..i + 1,
+                    incidence: row.incidence,
+                })
+                .collect(),
+            incidences: self.incidences,
         };
         let components = estimate(&terms, INDEPENDENT);
         self.rows

@@ -1,16 +1,20 @@
 //! What the fit of a scan costs where many share their angles, against one fit after the other, in one run:
-//! `cargo bench -p brdf-fit --bench batch`.
+//! `cargo bench -p brdf-fit --bench batch`, or `... -- three+n` for one model, `-- intervals`, or `-- fit`.
 //!
 //! The scans have the 112 angles of a measured paint, parameters drawn at random, noise of 2 % of each
 //! reading and of 0.1 % of the largest one. Times are the shortest of five runs, so that other work on the
 //! machine does not count.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
 use brdf_core::{AnyBrdf, Geometry, ModelParameters};
 use brdf_fit::batch::{BatchFit, BatchOptions, BatchPlan, Scans};
-use brdf_fit::{FitOptions, Measurement, Measurements, Model, RefractiveIndex, fit};
+use brdf_fit::{
+    FitOptions, Measurement, Measurements, Model, RefractiveIndex, fit,
+    intervals_of_many_on_one_thread,
+};
 use rand::rngs::StdRng;
 use rand::{RngExt as _, SeedableRng as _};
 
@@ -84,6 +88,8 @@ fn main() {
         n: N,
         ..BatchOptions::default()
     };
+    let only = std::env::args().skip(1).find(|word| !word.starts_with('-'));
+    let is_wanted = |part: &str| only.as_deref().is_none_or(|only| only == part);
     println!("{m} readings a scan, one thread unless said; us a scan");
     for model in [
         Model::Lambert,
@@ -92,6 +98,9 @@ fn main() {
         Model::Ggx,
         Model::Beckmann,
     ] {
+        if !is_wanted(model.name()) {
+            continue;
+        }
         let start = Instant::now();
         let plan = BatchPlan::new(&angles, &options(model)).expect("a plan");
         let made = 1e3 * start.elapsed().as_secs_f64();
@@ -116,14 +125,34 @@ fn main() {
         (Model::SmithN, 20),
         (Model::PowerN, 200),
     ] {
+        if !is_wanted(model.name()) {
+            continue;
+        }
         let plan = BatchPlan::new(&angles, &options(model)).expect("a plan");
         let few = Scans::new(&all[..SCANS / part * m], m).expect("whole scans");
         let (time, _) = microseconds(SCANS / part, || plan.run(few).on_one_thread().fit());
         println!("{model:12} {time:8.2}");
     }
-    for model in [Model::Three, Model::ThreeN] {
-        one_by_one(&angles, &all, model);
+    if is_wanted("intervals") {
+        intervals(&angles, &all);
     }
+    for model in [Model::Three, Model::ThreeN] {
+        if is_wanted("fit") {
+            one_by_one(&angles, &all, model);
+        }
+    }
+}
+
+/// The intervals of the first scans, whose errors are estimated from the residuals of each.
+fn intervals(angles: &[Measurement], all: &[f64]) {
+    const SCANS: usize = 500;
+    let few = Scans::new(&all[..SCANS * angles.len()], angles.len()).expect("whole scans");
+    let options = BatchOptions::default();
+    let (time, _) = microseconds(SCANS, || {
+        let mut observer = |_, _| ControlFlow::Continue(());
+        intervals_of_many_on_one_thread(angles, &options, few, &mut observer)
+    });
+    println!("intervals    {time:8.2}");
 }
 
 /// The library's fit of the first scans, and how far E of the plan is from it.

@@ -1,5 +1,10 @@
 //! The columns of a model between the widths of the grid, as polynomials of ln k1.
 
+#![expect(
+    clippy::inline_always,
+    reason = "a function that is not inlined is not compiled for the present processor"
+)]
+
 use super::table::Angle;
 use nalgebra::SMatrix;
 
@@ -21,8 +26,8 @@ pub(super) struct Cell {
     pub(super) ends: [f64; 2],
     cos: Polynomial,
     sin: Polynomial,
-    /// The polynomials of the coordinates of v: the coefficients of one power are adjacent.
-    directions: [Vec<f64>; COEFFICIENTS],
+    /// The polynomial of each coordinate of v.
+    directions: Vec<Polynomial>,
 }
 
 /// A polynomial, by ascending powers.
@@ -31,7 +36,7 @@ pub(super) struct Polynomial([f64; COEFFICIENTS]);
 
 impl Polynomial {
     /// The value, the first and the second derivative.
-    #[inline]
+    #[inline(always)]
     pub(super) fn at(&self, t: f64) -> [f64; 3] {
         let [mut value, mut slope, mut half_bend] = [0.0; 3];
         for c in self.0.iter().rev() {
@@ -82,10 +87,9 @@ impl Cell {
             (0..COEFFICIENTS).map(|j| inverse[(k, j)] * value(j)).sum()
         };
         let dimension = values[0].1.len();
-        let directions = std::array::from_fn(|k| {
-            let of = |c: usize| coefficient(k, &|j| values[j].1[c]);
-            (0..dimension).map(of).collect()
-        });
+        let directions = (0..dimension)
+            .map(|c| Polynomial(std::array::from_fn(|k| coefficient(k, &|j| values[j].1[c]))))
+            .collect();
         let of_angle = |part: fn(&Angle) -> f64| {
             Polynomial(std::array::from_fn(|k| {
                 coefficient(k, &|j| part(&values[j].0))
@@ -108,12 +112,14 @@ impl Cell {
     }
 
     /// The cell for a scan, given by the coordinates of its readings.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of(&self, coordinates: &[f64]) -> Line {
-        let beside = self
-            .directions
-            .each_ref()
-            .map(|v| crate::objective::dot_of(v, coordinates));
+        let mut beside = [0.0; COEFFICIENTS];
+        for (Polynomial(direction), coordinate) in self.directions.iter().zip(coordinates) {
+            for (sum, coefficient) in beside.iter_mut().zip(direction) {
+                *sum += coefficient * coordinate;
+            }
+        }
         Line {
             cos: self.cos,
             sin: self.sin,
@@ -127,11 +133,8 @@ impl Cell {
             let Some((angle, v)) = at(self.k1(t)) else {
                 return f64::INFINITY;
             };
-            let of = |k: usize| {
-                let coefficients = self.directions.each_ref().map(|direction| direction[k]);
-                Polynomial(coefficients).at(t)[0]
-            };
-            let of_v = v.iter().enumerate().map(|(k, v)| (v - of(k)).abs());
+            let of_v = v.iter().zip(&self.directions);
+            let of_v = of_v.map(|(v, direction)| (v - direction.at(t)[0]).abs());
             of_v.fold((angle.cos - self.cos.at(t)[0]).abs(), f64::max)
         };
         [-0.99, -0.5, 0.0, 0.5, 0.99]
@@ -141,14 +144,17 @@ impl Cell {
     }
 
     /// k1 at t.
+    #[inline]
     pub(super) fn k1(&self, t: f64) -> f64 {
         (self.centre + self.step * t).exp()
     }
 
     /// A bound of the second derivative of v and of the unit column with respect to t at the centre.
     pub(super) fn curvature(&self) -> f64 {
-        let norm = |v: &[f64]| super::basis::norm(v);
-        let [v, v1, v2] = [0, 1, 2].map(|k| norm(&self.directions[k]));
+        let [v, v1, v2] = [0, 1, 2].map(|k| {
+            let coefficients: Vec<f64> = self.directions.iter().map(|line| line.0[k]).collect();
+            super::basis::norm(&coefficients)
+        });
         let [_, _, cos2] = self.cos.at(0.0);
         let [sin0, sin1, sin2] = self.sin.at(0.0);
         let lobe = cos2.abs() + sin2.abs() * v + 2.0 * sin1.abs() * v1 + sin0.abs() * 2.0 * v2;

@@ -16,12 +16,14 @@
 //! 3. `exact`: the weights, E and standard errors at the result, with the columns of the model itself.
 //!
 //! Where n or p are free, the basis is coarse and gives the starts of descents with exact columns
-//! (`solver::descent`). Scans with gaps or with weights of their own have their own scalar products (`own`).
+//! (`solver::descent`). Scans with gaps or with weights of their own have their own scalar products (`own`)
+//! and are followed with exact columns between two widths of the grid (`along`).
 //!
 //! The optimum is that of [`fit`](crate::fit::fit()). With n fixed, E of the two differed by less than 1e-9
 //! of its value, or 1e-13 of the readings' squares, on all scans of `tests/batch.rs`. Where n or p is free,
 //! one of the two rarely misses the lowest of several minima that are nearly alike.
 
+mod along;
 mod basis;
 mod cell;
 mod exact;

@@ -2,13 +2,19 @@
 
 use brdf_core::ModelParameters;
 use nalgebra::{DMatrix, DMatrixView};
+use pulp::{Simd, WithSimd};
 
+use super::along::{Along, Bracket};
+use super::plan::BatchPlan;
 use crate::model::{Grid, PLAIN, ReducedModel};
-use crate::objective::{Objective, ProfileSums, solve_for};
+use crate::objective::{LobeColumns, Objective, PROCESSOR, ProfileSums, dot_of, solve_for};
 use crate::solver::descent::{Descent, Rows};
 
 /// The number of scans that are searched together.
-pub(super) const BLOCK: usize = 32;
+pub(super) const BLOCK: usize = 64;
+
+/// The scans of a block are filled up to a multiple of this: the products of a few columns have other sums.
+const FULL: usize = 8;
 
 /// The largest number of minima of the grid from which a scan descends.
 const MOST_MINIMA: usize = 8;
@@ -20,21 +26,81 @@ const WORSE: f64 = 0.02;
 /// The same where k1 alone is searched: a minimum between two widths is not much lower than the grid.
 const WORSE_ALONG_K1: f64 = 0.01;
 
+/// Minima that are no deeper than this fraction of the readings' squares are rounding, except the lowest.
+const ROUNDING: f64 = 1e-14;
+
+/// Below this number of readings that were taken, descents replace the search along k1: few readings are
+/// nearly interpolated, and their E may have minima between the widths of the grid.
+const FEW_TAKEN: usize = 24;
+
+/// Where no width shows a lobe, those are followed whose scalar product with the readings is above this.
+const FAINT: f64 = -0.05;
+
+/// A lobe's column is parallel to the diffuse one where the square of its rest is less than this fraction.
+const COLLINEAR: f64 = 1e-14;
+
 /// The columns of the grid and their products, for scans of any weights.
 #[derive(Debug, Clone)]
 pub(super) struct OwnTable {
     grid: Grid,
-    /// u, u u and u a of each point of the grid, one row for each.
+    /// u of each point of the grid, one row for each.
     lobes: DMatrix<f64>,
-    squares: DMatrix<f64>,
-    mixed: DMatrix<f64>,
+    /// u u of each point, and below them u a.
+    products: DMatrix<f64>,
 }
 
-/// A scan with its own weights: y of unit length with these weights.
+/// A scan with its own weights.
 pub(super) struct OwnScan {
+    /// y with these weights, of unit length.
     pub(super) y: Vec<f64>,
     /// The roots of the weights of its rows, 0 for a reading that was not taken.
     pub(super) factors: Vec<f64>,
+    /// The diffuse column times these roots.
+    pub(super) diffuse: Vec<f64>,
+}
+
+impl OwnScan {
+    /// A scan whose y is not of unit length yet, and the number of its readings.
+    pub(super) fn new(plan: &BatchPlan, readings: &[f64], weights: &[f64]) -> (Self, usize) {
+        let rows = plan.factors.len();
+        let mut scan = Self {
+            y: Vec::with_capacity(rows),
+            factors: Vec::with_capacity(rows),
+            diffuse: Vec::with_capacity(rows),
+        };
+        let (_, a) = plan.objective.fixed_columns();
+        let mut used = 0;
+        let rows = plan.factors.iter().zip(a).zip(plan.objective.readings());
+        for ((factor, a), &reading) in rows {
+            let (value, weight) = (readings[reading], weights[reading]);
+            let taken = !value.is_nan() && weight > 0.0 && *factor > 0.0;
+            let own = if taken { weight.sqrt() } else { 0.0 };
+            scan.factors.push(own);
+            scan.diffuse.push(own * a);
+            scan.y.push(if taken { own * factor * value } else { 0.0 });
+            used += usize::from(taken);
+        }
+        (scan, used)
+    }
+
+    /// Divides y by its length, given its largest value. Its length.
+    pub(super) fn normalise(&mut self, largest: f64) -> f64 {
+        for y in &mut self.y {
+            *y /= largest;
+        }
+        let length = super::basis::norm(&self.y);
+        for y in &mut self.y {
+            *y /= length;
+        }
+        largest * length
+    }
+
+    pub(super) fn rows(&self) -> Rows<'_> {
+        Rows {
+            y: &self.y,
+            factors: Some(&self.factors),
+        }
+    }
 }
 
 impl OwnTable {
@@ -43,22 +109,67 @@ impl OwnTable {
         let column = |i| objective.lobe_column(&with_lobe(grid.at(i)));
         let columns: Vec<Vec<f64>> = (0..grid.len()).map(column).collect();
         let (_, a) = objective.fixed_columns();
-        let matrix = |of: &dyn Fn(f64, f64) -> f64| {
-            DMatrix::from_fn(columns.len(), a.len(), |i, row| of(columns[i][row], a[row]))
-        };
+        let points = columns.len();
         Self {
-            lobes: matrix(&|u, _| u),
-            squares: matrix(&|u, _| u * u),
-            mixed: matrix(&|u, a| u * a),
+            lobes: DMatrix::from_fn(points, a.len(), |i, row| columns[i][row]),
+            products: DMatrix::from_fn(2 * points, a.len(), |i, row| {
+                let u = columns[i % points][row];
+                u * if i < points { u } else { a[row] }
+            }),
             grid,
         }
     }
+}
 
-    /// The optima of some scans.
-    pub(super) fn optima(&self, descent: &Descent<'_>, scans: &[OwnScan]) -> Vec<ModelParameters> {
-        let rows = self.lobes.ncols();
-        let mut weights = vec![0.0; rows * scans.len()];
-        let mut weighted = vec![0.0; rows * scans.len()];
+/// The search of some scans.
+pub(super) struct OwnSearch<'a> {
+    plan: &'a BatchPlan,
+    table: &'a OwnTable,
+    /// Along k1 with the weights that the search there knows: whether there is a diffuse part.
+    along_k1: Option<bool>,
+    /// u u and u a of each point, one column for each scan, and u y.
+    products: DMatrix<f64>,
+    measured: DMatrix<f64>,
+    /// E of each point of the grid.
+    errors: Vec<f64>,
+    /// The scalar product of y and the unit column beside the diffuse one.
+    beside: Vec<f64>,
+}
+
+impl<'a> OwnSearch<'a> {
+    pub(super) fn new(plan: &'a BatchPlan) -> Self {
+        let table = plan.own();
+        // Where the columns of the plan are no polynomials between two widths, E may have minima there that
+        // no slope at the widths shows.
+        let is_smooth = plan
+            .table
+            .as_ref()
+            .is_some_and(|table| table.ends_in_minima);
+        let along_k1 = match plan.model.fixed_weights() {
+            _ if !is_smooth => None,
+            [None, None] => Some(true),
+            [None, Some(0.0)] => Some(false),
+            _ => None,
+        };
+        let points = table.grid.len();
+        Self {
+            plan,
+            table,
+            along_k1,
+            products: DMatrix::zeros(0, 0),
+            measured: DMatrix::zeros(0, 0),
+            errors: vec![0.0; points],
+            beside: vec![0.0; points],
+        }
+    }
+
+    /// The scalar products of some scans with the columns of the grid.
+    pub(super) fn project(&mut self, scans: &[OwnScan]) {
+        let table = self.table;
+        let rows = table.lobes.ncols();
+        let columns = scans.len().next_multiple_of(FULL);
+        let mut weights = vec![0.0; rows * columns];
+        let mut weighted = vec![0.0; rows * columns];
         for (i, scan) in scans.iter().enumerate() {
             let at = i * rows..(i + 1) * rows;
             let to = weights[at.clone()].iter_mut().zip(&mut weighted[at]);
@@ -67,31 +178,108 @@ impl OwnTable {
                 *weighted = factor * y;
             }
         }
-        let view = |values| DMatrixView::from_slice(values, rows, scans.len());
-        let squares = &self.squares * view(&weights);
-        let mixed = &self.mixed * view(&weights);
-        let measured = &self.lobes * view(&weighted);
-        let (_, a) = descent.objective.fixed_columns();
-        let one = |(i, scan): (usize, &OwnScan)| {
-            let weights = &weights[i * rows..(i + 1) * rows];
-            let weighted = &weighted[i * rows..(i + 1) * rows];
-            let aa = a.iter().zip(weights).map(|(a, g)| a * a * g).sum();
-            let ay = a.iter().zip(weighted).map(|(a, y)| a * y).sum();
-            let fixed = descent.model.fixed_weights();
-            let point = |j: usize| {
-                let (uu, ua, uy) = (squares[(j, i)], mixed[(j, i)], measured[(j, i)]);
-                solve_for(fixed, &ProfileSums { uu, ua, uy, aa, ay }).2
-            };
-            let errors: Vec<f64> = (0..self.lobes.nrows()).map(point).collect();
-            let rows = Rows {
-                y: &scan.y,
-                factors: Some(&scan.factors),
-            };
-            self.lowest(descent, &errors, rows)
-        };
-        scans.iter().enumerate().map(one).collect()
+        self.products = &table.products * DMatrixView::from_slice(&weights, rows, columns);
+        self.measured = &table.lobes * DMatrixView::from_slice(&weighted, rows, columns);
     }
 
+    /// The optimum of scan `i`, of `used` readings.
+    pub(super) fn optimum(
+        &mut self,
+        i: usize,
+        scan: &OwnScan,
+        used: usize,
+        columns: &mut LobeColumns,
+    ) -> ModelParameters {
+        match self.along_k1 {
+            Some(has_diffuse) if used >= FEW_TAKEN => self.along_k1(i, scan, has_diffuse, columns),
+            _ => self.descended(i, scan),
+        }
+    }
+
+    /// The optimum by descents along all nonlinear parameters.
+    fn descended(&mut self, i: usize, scan: &OwnScan) -> ModelParameters {
+        let points = self.table.grid.len();
+        let fixed = self.plan.model.fixed_weights();
+        let (aa, ay) = (
+            dot_of(&scan.diffuse, &scan.diffuse),
+            dot_of(&scan.diffuse, &scan.y),
+        );
+        for (j, error) in self.errors.iter_mut().enumerate() {
+            let (uu, ua) = (self.products[(j, i)], self.products[(points + j, i)]);
+            let uy = self.measured[(j, i)];
+            *error = solve_for(fixed, &ProfileSums { uu, ua, uy, aa, ay }).2;
+        }
+        let descent = Descent {
+            objective: &self.plan.objective,
+            model: self.plan.model,
+        };
+        self.table.lowest(&descent, &self.errors, scan.rows())
+    }
+
+    /// The optimum along k1 alone.
+    fn along_k1(
+        &mut self,
+        i: usize,
+        scan: &OwnScan,
+        has_diffuse: bool,
+        columns: &mut LobeColumns,
+    ) -> ModelParameters {
+        let points = self.table.grid.len();
+        let products = &self.products.as_slice()[2 * points * i..2 * points * (i + 1)];
+        let (squares, mixed) = products.split_at(points);
+        let plain = PROCESSOR.dispatch(OfGrid {
+            scan,
+            has_diffuse,
+            squares,
+            mixed,
+            measured: &self.measured.as_slice()[points * i..points * (i + 1)],
+            errors: &mut self.errors,
+            beside: &mut self.beside,
+        });
+        let [_, n, p] = self.table.grid.at(0);
+        let along = Along::new(self.plan, scan, [n, p], has_diffuse);
+        let best = self
+            .followed(plain)
+            .into_iter()
+            .map(|point| {
+                let bracket = Bracket::new(&self.table.grid.axes[0], &self.errors, point);
+                along.lowest(&bracket, columns)
+            })
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let k1 = best.map_or(self.table.grid.at(0)[0], |(k1, _)| k1);
+        with_lobe([k1, n, p])
+    }
+
+    /// The points of the grid near which the optimum may lie, E without a lobe being `plain`.
+    fn followed(&self, plain: f64) -> Vec<usize> {
+        let errors = &self.errors;
+        let lowest = errors.iter().copied().fold(f64::INFINITY, f64::min);
+        let beyond = |i: usize| errors.get(i).copied().unwrap_or(f64::INFINITY);
+        let is_minimum = |&i: &usize| {
+            let here = errors[i];
+            let (left, right) = (beyond(i.wrapping_sub(1)), beyond(i + 1));
+            here <= lowest + WORSE_ALONG_K1
+                && here < left
+                && here <= right
+                && (here == lowest || here < left.min(right) - ROUNDING)
+        };
+        let mut points: Vec<usize> = (0..errors.len()).filter(is_minimum).collect();
+        points.sort_by(|a, b| errors[*a].total_cmp(&errors[*b]));
+        points.truncate(MOST_MINIMA);
+        if lowest >= plain {
+            // Where no width of the grid shows a lobe, one between them may, however faint it is.
+            let beside = &self.beside;
+            let beyond = |i: usize| beside.get(i).copied().unwrap_or(f64::NEG_INFINITY);
+            let is_faint = |&i: &usize| {
+                beside[i] > FAINT && beside[i] >= beyond(i.wrapping_sub(1)).max(beyond(i + 1))
+            };
+            points.extend((0..beside.len()).filter(is_faint).take(MOST_MINIMA));
+        }
+        points
+    }
+}
+
+impl OwnTable {
     /// The lowest of the minima below those of the grid.
     fn lowest(&self, descent: &Descent<'_>, errors: &[f64], rows: Rows<'_>) -> ModelParameters {
         let lowest = errors.iter().copied().fold(f64::INFINITY, f64::min);
@@ -122,6 +310,60 @@ impl OwnTable {
             .map(|i| descent.from(with_lobe(self.grid.at(i)), rows));
         let best = descents.min_by(|a, b| a.1.total_cmp(&b.1));
         best.map_or(with_lobe(self.grid.at(0)), |(at, _)| at)
+    }
+}
+
+/// E of each point of the grid with the best weights, and the scalar product of y and the unit column
+/// beside the diffuse one; E without a lobe.
+struct OfGrid<'a> {
+    scan: &'a OwnScan,
+    has_diffuse: bool,
+    squares: &'a [f64],
+    mixed: &'a [f64],
+    measured: &'a [f64],
+    errors: &'a mut [f64],
+    beside: &'a mut [f64],
+}
+
+impl WithSimd for OfGrid<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
+    fn with_simd<V: Simd>(self, _: V) -> f64 {
+        let OwnScan { y, diffuse, .. } = self.scan;
+        let (aa, ay) = if self.has_diffuse {
+            (dot_of(diffuse, diffuse), dot_of(diffuse, y))
+        } else {
+            (1.0, 0.0)
+        };
+        let per_square = 1.0 / aa;
+        let of_diffuse = ay * per_square;
+        let positive = |x: f64| if x > 0.0 { x } else { 0.0 };
+        let plain = positive(ay) * of_diffuse;
+        let rows = self.squares.iter().zip(self.mixed).zip(self.measured);
+        let to = self.errors.iter_mut().zip(self.beside);
+        for ((error, beside), ((uu, ua), uy)) in to.zip(rows) {
+            let ua = if self.has_diffuse { *ua } else { 0.0 };
+            let rest = uu - ua * ua * per_square;
+            let along = uy - ua * of_diffuse;
+            // Comparisons rather than `max`: they become vector code.
+            let is_apart = rest > COLLINEAR * uu;
+            let safe = if is_apart { rest } else { 1.0 };
+            let both = ay * of_diffuse + along * along / safe;
+            let lobe = positive(*uy);
+            let alone = lobe * lobe / if *uu > 0.0 { *uu } else { 1.0 };
+            // kD < 0 where the lobe takes more than there is.
+            let without_diffuse = ay * rest < ua * along || !is_apart;
+            let with_lobe = if without_diffuse { alone } else { both };
+            let has_lobe = if is_apart { along > 0.0 } else { alone > plain };
+            *error = 1.0 - if has_lobe { with_lobe } else { plain };
+            *beside = along / safe.sqrt();
+        }
+        1.0 - plain
     }
 }
 

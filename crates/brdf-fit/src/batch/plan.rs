@@ -220,7 +220,11 @@ impl BatchPlan {
     }
 
     /// y of each row: the readings times the factors of the rows and a common one.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
     pub(super) fn weighted(&self, readings: &[f64], common: f64, y: &mut [f64]) {
         if self.in_order {
             for ((y, factor), reading) in y.iter_mut().zip(&self.factors).zip(readings) {

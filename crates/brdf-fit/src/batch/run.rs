@@ -4,16 +4,17 @@ use std::f64;
 use std::ops::ControlFlow;
 
 use brdf_core::ModelParameters;
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::exact::{best_weights, standard_errors};
-use super::own::OwnScan;
+use super::exact::{Weighed, best_weights, standard_errors};
+use super::own::{OwnScan, OwnSearch};
 use super::plan::{BatchError, BatchPlan};
 use super::result::{BatchFit, Row, Status};
 use super::scans::Scans;
 use super::search::{BLOCK, Found, Search};
 use crate::model::{K1_RANGE, Parameter};
-use crate::objective::{SIZES, dot_of};
+use crate::objective::{LobeColumns, PROCESSOR, SIZES, dot_of};
 use crate::solver::descent::{Descent, Rows};
 
 /// The number of scans that a thread takes at a time.
@@ -181,7 +182,7 @@ struct Chunk<'a, T> {
     weights: Vec<f64>,
     /// y of a scan.
     y: Vec<f64>,
-    lobe: Vec<f64>,
+    columns: LobeColumns,
     found: Vec<Found>,
     rows: Vec<Row>,
     /// The scans with gaps or with their own weights: the place of the row, the length of y, the number
@@ -203,7 +204,7 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
             readings: vec![0.0; BLOCK * plan.readings],
             weights: Vec::new(),
             y: vec![0.0; plan.factors.len()],
-            lobe: Vec::with_capacity(plan.factors.len()),
+            columns: LobeColumns::default(),
             found: Vec::new(),
             rows: Vec::with_capacity(CHUNK),
             own: Vec::new(),
@@ -236,10 +237,13 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
     fn take(&mut self, i: usize, scan: usize) -> Result<Kind, BatchError> {
         let (run, plan) = (self.run, self.run.plan);
         let column = i * plan.readings..(i + 1) * plan.readings;
-        run.scans.load(scan, &mut self.readings[column.clone()]);
-        let readings = &mut self.readings[column];
-        plan.weighted(readings, 1.0, &mut self.y);
-        let squares = dot_of(&self.y, &self.y);
+        let squares = PROCESSOR.dispatch(Load {
+            plan,
+            scans: &run.scans,
+            scan,
+            readings: &mut self.readings[column],
+            y: &mut self.y,
+        });
         let shared = run.weights.is_none() && (self.search.is_some() || !plan.has_lobe());
         let sizes = SIZES.start().powi(2)..=SIZES.end().powi(2);
         if shared && sizes.contains(&squares) {
@@ -273,18 +277,8 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
                 });
             }
         }
-        let mut factors = Vec::with_capacity(plan.factors.len());
-        let mut y = Vec::with_capacity(plan.factors.len());
-        let (mut largest, mut used) = (0.0_f64, 0);
-        for (factor, &reading) in plan.factors.iter().zip(plan.objective.readings()) {
-            let (value, weight) = (readings[reading], self.weights[reading]);
-            let taken = !value.is_nan() && weight > 0.0 && *factor > 0.0;
-            let own = if taken { weight.sqrt() } else { 0.0 };
-            factors.push(own);
-            y.push(if taken { own * factor * value } else { 0.0 });
-            used += usize::from(taken);
-            largest = largest.max(y[y.len() - 1].abs());
-        }
+        let (mut own, used) = OwnScan::new(plan, readings, &self.weights);
+        let largest = own.y.iter().fold(0.0_f64, |max, y| max.max(y.abs()));
         // The columns of the block stay free of NaN.
         readings.fill(0.0);
         let status = match largest {
@@ -296,12 +290,9 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
         let used_count = u32::try_from(used).unwrap_or(u32::MAX);
         let row = Row::without_fit(status.unwrap_or_default(), used_count);
         if status.is_none() {
-            let length = largest * super::basis::norm(&scaled(&y, 1.0 / largest));
-            for y in &mut y {
-                *y /= length;
-            }
+            let length = own.normalise(largest);
             self.own.push((self.rows.len(), length, used));
-            self.own_scans.push(OwnScan { y, factors });
+            self.own_scans.push(own);
         }
         self.rows.push(row);
         Ok(())
@@ -312,7 +303,12 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
         let plan = self.run.plan;
         let readings = &self.readings[i * plan.readings..(i + 1) * plan.readings];
         let length = squares.sqrt();
-        plan.weighted(readings, 1.0 / length, &mut self.y);
+        PROCESSOR.dispatch(Weight {
+            plan,
+            readings,
+            common: 1.0 / length,
+            y: &mut self.y,
+        });
         if let Some(search) = &mut self.search {
             search.optima(i, squares, &mut self.found);
         } else {
@@ -327,7 +323,9 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
             objective: &plan.objective,
             model: plan.model,
         };
-        let mut best: Option<(ModelParameters, f64)> = None;
+        let (_, diffuse) = plan.objective.fixed_columns();
+        let by_k1 = self.run.errors && plan.is_along_k1();
+        let mut best: Option<Weighed> = None;
         for found in &self.found {
             let [k1, n, p] = found.at;
             let start = ModelParameters {
@@ -343,13 +341,13 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
             } else {
                 descent.from(start, rows).0
             };
-            let here = best_weights(plan, at, rows, &mut self.lobe);
-            if best.is_none_or(|best| here.1 < best.1) {
+            let here = best_weights(plan, at, rows, diffuse, by_k1, &mut self.columns);
+            if best.is_none_or(|best| here.error < best.error) {
                 best = Some(here);
             }
         }
         match best {
-            Some(best) => self.row(best, length, plan.used, rows),
+            Some(best) => self.row(&best, length, plan.used, rows),
             None => Row::without_fit(Status::OutOfRange, 0),
         }
     }
@@ -357,34 +355,28 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
     /// Fits the scans with gaps or with their own weights.
     fn fit_own(&mut self) {
         let plan = self.run.plan;
-        let descent = Descent {
-            objective: &plan.objective,
-            model: plan.model,
-        };
+        let by_k1 = self.run.errors && plan.is_along_k1();
         let scans = std::mem::take(&mut self.own_scans);
         let places = std::mem::take(&mut self.own);
+        let mut search = OwnSearch::new(plan);
         for (scans, places) in scans
             .chunks(super::own::BLOCK)
             .zip(places.chunks(super::own::BLOCK))
         {
-            let optima = plan.own().optima(&descent, scans);
-            for ((scan, at), &(place, length, used)) in scans.iter().zip(optima).zip(places) {
-                let rows = Rows {
-                    y: &scan.y,
-                    factors: Some(&scan.factors),
-                };
-                let mut lobe = std::mem::take(&mut self.lobe);
-                let best = best_weights(plan, at, rows, &mut lobe);
-                self.lobe = lobe;
-                self.rows[place] = self.row(best, length, used, rows);
+            search.project(scans);
+            for (i, (scan, &(place, length, used))) in scans.iter().zip(places).enumerate() {
+                let rows = scan.rows();
+                let at = search.optimum(i, scan, used, &mut self.columns);
+                let best = best_weights(plan, at, rows, &scan.diffuse, by_k1, &mut self.columns);
+                self.rows[place] = self.row(&best, length, used, rows);
             }
         }
     }
 
     /// The row of the best parameters of a scan, of which y is divided by `length`.
-    fn row(&self, best: (ModelParameters, f64), length: f64, used: usize, rows: Rows<'_>) -> Row {
+    fn row(&self, best: &Weighed, length: f64, used: usize, rows: Rows<'_>) -> Row {
         let plan = self.run.plan;
-        let (mut at, error) = best;
+        let Weighed { mut at, error, .. } = *best;
         let frees = |parameter| plan.model.frees(parameter);
         let status = if frees(Parameter::K2) && at.k2 == 0.0 {
             Status::NoLobe
@@ -397,7 +389,7 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
         };
         let mut errors = [f64::NAN; 5];
         if self.run.errors {
-            errors = standard_errors(&plan.objective, plan.model, &at, error, used, rows);
+            errors = standard_errors(plan, best, used, rows);
             for error in &mut errors[..2] {
                 *error *= length;
             }
@@ -420,6 +412,47 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
     }
 }
 
-fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
-    values.iter().map(|value| value * factor).collect()
+/// Loads a scan and its y; the sum of the squares of y.
+struct Load<'a, 'b, T> {
+    plan: &'a BatchPlan,
+    scans: &'a Scans<'b, T>,
+    scan: usize,
+    readings: &'a mut [f64],
+    y: &'a mut [f64],
+}
+
+impl<T: Copy + Into<f64>> WithSimd for Load<'_, '_, T> {
+    type Output = f64;
+
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
+    fn with_simd<V: Simd>(self, _: V) -> f64 {
+        self.scans.load(self.scan, self.readings);
+        self.plan.weighted(self.readings, 1.0, self.y);
+        dot_of(self.y, self.y)
+    }
+}
+
+/// [`BatchPlan::weighted`].
+struct Weight<'a> {
+    plan: &'a BatchPlan,
+    readings: &'a [f64],
+    common: f64,
+    y: &'a mut [f64],
+}
+
+impl WithSimd for Weight<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
+    fn with_simd<V: Simd>(self, _: V) {
+        self.plan.weighted(self.readings, self.common, self.y);
+    }
 }

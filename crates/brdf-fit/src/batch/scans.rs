@@ -88,7 +88,11 @@ impl<'a, T> Scans<'a, T> {
 
 impl<T: Copy + Into<f64>> Scans<'_, T> {
     /// Copies the readings of a scan.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
     pub(crate) fn load(&self, scan: usize, to: &mut [f64]) {
         let start = scan * self.scan_stride;
         if self.reading_stride == 1 {

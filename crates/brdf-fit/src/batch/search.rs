@@ -1,10 +1,17 @@
 //! The search of all scans of a block for their global optimum, in the basis of the plan.
 
+#![expect(
+    clippy::inline_always,
+    reason = "a function that is not inlined is not compiled for the present processor"
+)]
+
 use nalgebra::{DMatrix, DMatrixView};
+use pulp::{Simd, WithSimd};
 
 use super::cell::{Cell, Line};
 use super::table::{Angle, Table};
 use crate::model::PLAIN;
+use crate::objective::PROCESSOR;
 
 /// The number of scans that are searched together.
 pub(super) const BLOCK: usize = 64;
@@ -89,6 +96,16 @@ impl<'a> Search<'a> {
     /// explain as much within [`ALIKE`]. Where several parameters are searched, they are the starts of
     /// descents.
     pub(super) fn optima(&mut self, i: usize, squares: f64, to: &mut Vec<Found>) {
+        PROCESSOR.dispatch(Optima {
+            search: self,
+            i,
+            squares,
+            to,
+        });
+    }
+
+    #[inline(always)]
+    fn find(&mut self, i: usize, squares: f64, to: &mut Vec<Found>) {
         to.clear();
         let table = self.table;
         let dimension = table.dimension();
@@ -115,6 +132,7 @@ impl<'a> Search<'a> {
     }
 
     /// Follows the maxima of the grid along ln k1 that may lead to the largest one.
+    #[inline(always)]
     fn follow(&self, diffuse: f64, beside: &[f64], coordinates: &[f64], to: &mut Vec<Found>) {
         let (table, explained) = (self.table, &self.explained);
         let largest = largest(explained);
@@ -170,6 +188,7 @@ impl<'a> Search<'a> {
     }
 
     /// The highest maxima of the grid over several parameters.
+    #[inline(always)]
     fn starts(&self, squares: f64, to: &mut Vec<Found>) {
         let (table, explained) = (self.table, &self.explained);
         let rest = (squares - largest(explained)).max(0.0);
@@ -211,7 +230,25 @@ impl<'a> Search<'a> {
     }
 }
 
+/// [`Search::optima`].
+struct Optima<'a, 'b> {
+    search: &'a mut Search<'b>,
+    i: usize,
+    squares: f64,
+    to: &'a mut Vec<Found>,
+}
+
+impl WithSimd for Optima<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) {
+        self.search.find(self.i, self.squares, self.to);
+    }
+}
+
 /// The largest value, in four independent running maxima.
+#[inline(always)]
 fn largest(values: &[f64]) -> f64 {
     let (chunks, rest) = values.as_chunks::<4>();
     let mut lanes = [0.0_f64; 4];
@@ -226,6 +263,7 @@ fn largest(values: &[f64]) -> f64 {
 /// The explained squares at t of a cell, half their slope, and half the slope's slope.
 ///
 /// The slope is continuous where one of the weights becomes zero.
+#[inline(always)]
 fn along(line: &Line, diffuse: f64, t: f64) -> [f64; 3] {
     let [beside, beside1, beside2] = line.beside.at(t);
     if beside <= 0.0 {
@@ -254,6 +292,7 @@ fn along(line: &Line, diffuse: f64, t: f64) -> [f64; 3] {
 
 /// The highest point of a cell whose centre is a maximum of the grid: Newton's method on the slope,
 /// within a bracket that its sign narrows.
+#[inline(always)]
 fn highest(cell: &Cell, line: &Line, diffuse: f64, at_centre: f64) -> (f64, f64) {
     let [mut low, mut high] = cell.ends;
     let mut t = 0.0;

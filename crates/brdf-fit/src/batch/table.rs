@@ -42,7 +42,11 @@ pub(super) struct Angle {
 impl Angle {
     /// The part of the readings' squares that the model explains with the best weights: `diffuse` is the
     /// scalar product of the readings and a', `beside` that with v.
-    #[inline]
+    #[inline(always)]
+    #[expect(
+        clippy::inline_always,
+        reason = "a function that is not inlined is not compiled for the present processor"
+    )]
     pub(super) fn explained(self, diffuse: f64, beside: f64) -> f64 {
         let Self { cos, sin } = self;
         // Comparisons rather than `max`: they become vector code.

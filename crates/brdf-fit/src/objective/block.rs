@@ -103,18 +103,37 @@ impl Objective {
     /// The column u at the given k1, n and p.
     pub(crate) fn lobe_column(&self, at: &ModelParameters) -> Vec<f64> {
         let mut column = Vec::new();
-        self.fill_lobe(at, &mut column);
-        column
-    }
-
-    /// [`lobe_column`](Self::lobe_column) in a given vector.
-    pub(crate) fn fill_lobe(&self, at: &ModelParameters, column: &mut Vec<f64>) {
-        self.shape_column(at.k1, at.p, 0..self.len(), column);
+        self.shape_column(at.k1, at.p, 0..self.len(), &mut column);
         let fresnel = self.fresnel_column(at.n);
         column
             .iter_mut()
             .zip(fresnel.iter())
             .for_each(|(u, fresnel)| *u *= fresnel);
+        column
+    }
+
+    /// Evaluates the column u at the given k1, n and p, with its derivative with respect to k1 where it is
+    /// asked for, and passes them on.
+    pub(crate) fn with_lobe<W: WithLobe>(
+        &self,
+        at: &ModelParameters,
+        by_k1: bool,
+        columns: &mut LobeColumns,
+        then: W,
+    ) -> W::Output {
+        columns.u.resize(self.len(), 0.0);
+        columns.by_k1.resize(self.len(), 0.0);
+        let fresnel = self.fresnel_column(at.n);
+        let (rows, fresnel) = (self.shaped(0..self.len()), &*fresnel);
+        with_terms!(self.family, at.k1, at.p, |facet, shadowing| WholeLobe {
+            facet,
+            shadowing,
+            rows,
+            fresnel,
+            by_k1,
+            columns,
+            then,
+        })
     }
 
     /// Evaluates u and the requested derivatives with respect to k1, n and p, block by block, and
@@ -124,7 +143,18 @@ impl Objective {
         at: &ModelParameters,
         derivatives: [bool; 3],
         rows: Range<usize>,
-        mut take: impl FnMut(Range<usize>, &Block),
+        take: impl FnMut(Range<usize>, &Block),
+    ) {
+        self.give_blocks(at, derivatives, rows, &mut Call(take));
+    }
+
+    /// [`for_blocks`](Self::for_blocks) to what is compiled with them, for the present processor.
+    pub(crate) fn give_blocks<T: TakeBlock>(
+        &self,
+        at: &ModelParameters,
+        derivatives: [bool; 3],
+        rows: Range<usize>,
+        to: &mut T,
     ) {
         with_terms!(self.family, at.k1, at.p, |facet, shadowing| Blocks {
             objective: self,
@@ -133,7 +163,7 @@ impl Objective {
             n: at.n,
             derivatives,
             rows,
-            take: &mut take,
+            to,
         });
     }
 
@@ -145,7 +175,7 @@ impl Objective {
         n: f64,
         [by_k1, by_n, by_p]: [bool; 3],
         rows: Range<usize>,
-        take: &mut impl FnMut(Range<usize>, &Block),
+        to: &mut impl TakeBlock,
     ) {
         let dielectric = Dielectric::new(n);
         let mut start = rows.start;
@@ -176,7 +206,7 @@ impl Objective {
                 }
             }
             start = range.end;
-            take(range, &block);
+            to.take(range, &block);
         }
     }
 
@@ -243,7 +273,66 @@ impl<F: FacetDistribution, S: Shadowing> WithSimd for Shape<'_, F, S> {
     }
 }
 
-/// [`Objective::for_blocks`].
+/// What is done with the column of a lobe, in the same vector code as its evaluation.
+pub(crate) trait WithLobe {
+    type Output;
+
+    /// Takes u and its derivative with respect to k1, whose values are of no use where it was not asked for.
+    fn with_lobe(self, u: &mut [f64], by_k1: &mut [f64]) -> Self::Output;
+}
+
+/// The memory of the column of a lobe and of its derivative with respect to k1.
+#[derive(Debug, Default)]
+pub(crate) struct LobeColumns {
+    u: Vec<f64>,
+    by_k1: Vec<f64>,
+}
+
+/// [`Objective::with_lobe`].
+struct WholeLobe<'a, F, S, W> {
+    facet: F,
+    shadowing: S,
+    rows: Shaped<'a>,
+    fresnel: &'a [f64],
+    by_k1: bool,
+    columns: &'a mut LobeColumns,
+    then: W,
+}
+
+impl<F: FacetDistribution, S: Shadowing, W: WithLobe> WithSimd for WholeLobe<'_, F, S, W> {
+    type Output = W::Output;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, _: V) -> W::Output {
+        let (facet, shadowing) = (self.facet, self.shadowing);
+        let LobeColumns { u, by_k1 } = self.columns;
+        fill_shape(facet, shadowing, self.rows, u);
+        for (u, fresnel) in u.iter_mut().zip(self.fresnel) {
+            *u *= fresnel;
+        }
+        if self.by_k1 {
+            fill_by_k1(facet, shadowing, self.rows, self.fresnel, by_k1);
+        }
+        self.then.with_lobe(u, by_k1)
+    }
+}
+
+/// Takes the columns of some rows, block by block.
+pub(crate) trait TakeBlock {
+    fn take(&mut self, rows: Range<usize>, block: &Block);
+}
+
+/// Calls a function for each block.
+struct Call<F>(F);
+
+impl<F: FnMut(Range<usize>, &Block)> TakeBlock for Call<F> {
+    #[inline(always)]
+    fn take(&mut self, rows: Range<usize>, block: &Block) {
+        self.0(rows, block);
+    }
+}
+
+/// [`Objective::give_blocks`].
 struct Blocks<'a, F, S, T> {
     objective: &'a Objective,
     facet: F,
@@ -251,14 +340,14 @@ struct Blocks<'a, F, S, T> {
     n: f64,
     derivatives: [bool; 3],
     rows: Range<usize>,
-    take: &'a mut T,
+    to: &'a mut T,
 }
 
 impl<F, S, T> WithSimd for Blocks<'_, F, S, T>
 where
     F: FacetDistribution,
     S: Shadowing,
-    T: FnMut(Range<usize>, &Block),
+    T: TakeBlock,
 {
     type Output = ();
 
@@ -271,7 +360,7 @@ where
             self.n,
             self.derivatives,
             self.rows,
-            self.take,
+            self.to,
         );
     }
 }
@@ -302,8 +391,8 @@ fn fill_by_k1<F: FacetDistribution, S: Shadowing>(
     facet: F,
     shadowing: S,
     rows: Shaped<'_>,
-    fresnel: &[f64; BLOCK],
-    to: &mut [f64; BLOCK],
+    fresnel: &[f64],
+    to: &mut [f64],
 ) {
     if S::DEPENDS_ON_WIDTH {
         let rows = rows.tilts().zip(rows.cosines());
@@ -372,7 +461,8 @@ pub(crate) fn dot(x: &[f64; BLOCK], y: &[f64; BLOCK]) -> f64 {
             sums[lane] += x[lane] * y[lane];
         }
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
+    // The halves of a vector first: in another order, the sums would not stay in one.
+    (sums[0] + sums[2]) + (sums[1] + sums[3])
 }
 
 /// The scalar product of columns of any length, in eight independent running sums.

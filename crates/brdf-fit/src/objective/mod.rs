@@ -15,7 +15,7 @@ mod subset;
 pub(crate) mod weights;
 
 pub(crate) use best_weights::{solve, solve_for};
-pub(crate) use block::{BLOCK, PROCESSOR, dot, dot_of};
+pub(crate) use block::{BLOCK, Block, LobeColumns, PROCESSOR, TakeBlock, WithLobe, dot, dot_of};
 pub use error::ObjectiveError;
 pub use evaluation::{NormalEquations, PARALLEL_FROM};
 pub(crate) use evaluation::{ProfileSums, ROUNDING};

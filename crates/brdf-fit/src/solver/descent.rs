@@ -1,11 +1,12 @@
 //! Descents to a minimum of E along k1, n and p, where k2 and kD are the best ones at each step.
 
+use std::ops::Range;
+
 use brdf_core::ModelParameters;
 use nalgebra::{SMatrix, SVector};
-use pulp::{Simd, WithSimd};
 
 use crate::model::{Parameter, ReducedModel};
-use crate::objective::{BLOCK, Objective, PROCESSOR, ProfileSums, dot, solve_for};
+use crate::objective::{BLOCK, Block, Objective, ProfileSums, TakeBlock, dot, solve_for};
 
 /// The nonlinear parameters: k1, n and p.
 const NONLINEAR: [Parameter; 3] = [Parameter::K1, Parameter::N, Parameter::P];
@@ -58,32 +59,13 @@ impl Products {
         derivatives: [bool; 3],
         rows: Rows<'_>,
     ) -> Self {
-        let mut products = Self::default();
-        let used = [true, true, derivatives[0], derivatives[1], derivatives[2]];
-        objective.for_blocks(at, derivatives, 0..objective.len(), |range, block| {
-            // Rows beyond the last one are zero, as they are in the block.
-            let mut y = [0.0; BLOCK];
-            y[..range.len()].copy_from_slice(&rows.y[range.clone()]);
-            let mut columns: [&[f64; BLOCK]; 5] =
-                [&block.u, &block.a, &block.by[0], &block.by[1], &block.by[2]];
-            let mut own = [[0.0; BLOCK]; 5];
-            if let Some(factors) = rows.factors {
-                for i in (0..5).filter(|i| used[*i]) {
-                    let scaled = columns[i].iter().zip(&factors[range.clone()]);
-                    for (own, (x, factor)) in own[i].iter_mut().zip(scaled) {
-                        *own = x * factor;
-                    }
-                }
-                columns = own.each_ref();
-            }
-            PROCESSOR.dispatch(AddBlock {
-                products: &mut products,
-                columns,
-                y: &y,
-                used,
-            });
-        });
-        products
+        let mut adding = Adding {
+            products: Self::default(),
+            rows,
+            used: [true, true, derivatives[0], derivatives[1], derivatives[2]],
+        };
+        objective.give_blocks(at, derivatives, 0..objective.len(), &mut adding);
+        adding.products
     }
 
     pub(crate) fn sums(&self) -> ProfileSums {
@@ -101,31 +83,43 @@ impl Products {
     }
 }
 
-/// Adds the products of a block.
-struct AddBlock<'a> {
-    products: &'a mut Products,
-    columns: [&'a [f64; BLOCK]; 5],
-    y: &'a [f64; BLOCK],
+/// Adds the products of each block.
+struct Adding<'a> {
+    products: Products,
+    rows: Rows<'a>,
     used: [bool; 5],
 }
 
-impl WithSimd for AddBlock<'_> {
-    type Output = ();
-
+impl TakeBlock for Adding<'_> {
     #[inline(always)]
     #[expect(
         clippy::inline_always,
         reason = "a function that is not inlined is not compiled for the present processor"
     )]
-    fn with_simd<V: Simd>(self, _: V) {
+    fn take(&mut self, range: Range<usize>, block: &Block) {
         let Self {
             products,
-            columns,
-            y,
+            rows,
             used,
         } = self;
+        // Rows beyond the last one are zero, as they are in the block.
+        let mut y = [0.0; BLOCK];
+        y[..range.len()].copy_from_slice(&rows.y[range.clone()]);
+        let mut columns: [&[f64; BLOCK]; 5] =
+            [&block.u, &block.a, &block.by[0], &block.by[1], &block.by[2]];
+        let mut own;
+        if let Some(factors) = rows.factors {
+            own = [[0.0; BLOCK]; 5];
+            for i in (0..5).filter(|i| used[*i]) {
+                let scaled = columns[i].iter().zip(&factors[range.clone()]);
+                for (own, (x, factor)) in own[i].iter_mut().zip(scaled) {
+                    *own = x * factor;
+                }
+            }
+            columns = own.each_ref();
+        }
         for i in (0..5).filter(|i| used[*i]) {
-            products.measured[i] += dot(columns[i], y);
+            products.measured[i] += dot(columns[i], &y);
             for j in (0..=i).filter(|j| used[*j]) {
                 products.columns[i][j] += dot(columns[i], columns[j]);
             }

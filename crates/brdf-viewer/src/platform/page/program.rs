@@ -92,19 +92,18 @@ fn viewer(ctx: &egui::Context, address: &Address) -> Viewer {
     if keeps_nothing {
         viewer.state.report_note(NOTHING_KEPT);
     }
-    match &address.sample {
-        None => viewer.open_at_start(Vec::new()),
-        Some(name) => match built_in::entry_named(name) {
-            Some(entry) => viewer.open_linked(entry),
-            None => {
-                viewer.open_at_start(Vec::new());
-                let known: Vec<String> = built_in::link_names().collect();
-                viewer.state.report_error(format!(
-                    "the address asks for the sample {name}: expected one of {}",
-                    known.join(", ")
-                ));
-            }
-        },
+    let entry = address.sample.as_deref().and_then(built_in::entry_named);
+    if let Some(entry) = entry {
+        viewer.open_linked(entry);
+        return viewer;
+    }
+    viewer.open_at_start(Vec::new());
+    if let Some(name) = &address.sample {
+        let known: Vec<String> = built_in::link_names().collect();
+        viewer.state.report_error(format!(
+            "the address asks for the sample {name}: expected one of {}",
+            known.join(", ")
+        ));
     }
     viewer
 }

@@ -29,13 +29,13 @@ pub struct WebWorker {
 struct Fits {
     events: EventSender,
     queue: VecDeque<Queued>,
-    current: Option<(FitJob, Depth)>,
+    current: Option<(Box<FitJob>, Depth)>,
     worker: Option<Running>,
 }
 
 /// An entry of the queue.
 enum Queued {
-    Fit(FitJob, Depth),
+    Fit(Box<FitJob>, Depth),
     /// The end of a run, by its number.
     End(u64),
 }
@@ -66,7 +66,7 @@ impl Threads for WebWorker {
             Job::File(job) => self.events.send(work_on_file(job)),
             Job::Fit(jobs) => {
                 let fits = jobs.fits.into_iter();
-                let fits = fits.map(|job| Queued::Fit(job, jobs.depth));
+                let fits = fits.map(|job| Queued::Fit(Box::new(job), jobs.depth));
                 let end = Queued::End(jobs.run);
                 self.fits.borrow_mut().queue.extend(fits.chain([end]));
                 go_on(&self.fits);
@@ -76,7 +76,7 @@ impl Threads for WebWorker {
 
     /// A worker does not listen while it fits: it is ended, and another one is started.
     fn end_cancelled(&self) {
-        let is_cancelled = |(job, _): &(FitJob, Depth)| job.cancel.is_cancelled();
+        let is_cancelled = |(job, _): &(Box<FitJob>, Depth)| job.cancel.is_cancelled();
         if self
             .fits
             .borrow()

@@ -182,7 +182,10 @@ pub fn in_degrees(radians: f64) -> f64 {
 pub(crate) mod as_degrees {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde's signature")]
+    #[allow(
+        clippy::trivially_copy_pass_by_ref,
+        reason = "serde's signature; on 32 bits it is no lint"
+    )]
     pub(crate) fn serialize<S: Serializer>(radians: &f64, to: S) -> Result<S::Ok, S::Error> {
         super::in_degrees(*radians).serialize(to)
     }

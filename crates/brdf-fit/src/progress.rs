@@ -5,9 +5,10 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use brdf_core::ModelParameters;
+use serde::{Deserialize, Serialize};
 
 /// A phase of a fit and its report.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// Stage 1, including its initial values.
     Stage1,
@@ -44,7 +45,7 @@ impl fmt::Display for Phase {
 }
 
 /// What is done a known number of times in a phase.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Task {
     /// The prediction of incidences from a fit of the other incidences.
     CrossValidation,
@@ -62,7 +63,7 @@ impl fmt::Display for Task {
 }
 
 /// A part of a phase that begins. It is shown as `cross-validation 3 of 5`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Part {
     /// What is done.
     pub task: Task,
@@ -79,7 +80,7 @@ impl fmt::Display for Part {
 }
 
 /// One step of a phase.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// The phase.
     pub phase: Phase,

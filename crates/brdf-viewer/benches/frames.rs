@@ -9,8 +9,8 @@ use std::time::{Duration, Instant};
 
 use brdf_fit::Model;
 use brdf_viewer::Viewer;
-use brdf_viewer::dialogs::NativeDialogs;
 use brdf_viewer::intent::{Command, Intent};
+use brdf_viewer::platform::current::NativeDialogs;
 use brdf_viewer::screenshot::OffscreenWindow;
 use brdf_viewer::state::fit_settings::{Scope, Stages};
 use brdf_viewer::state::saved::Settings;

@@ -2,20 +2,24 @@
 
 use std::cell::RefCell;
 use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, channel};
 
 use eframe::egui;
 
-use crate::dialogs::Dialogs;
+use crate::events::EventSender;
 use crate::fonts::FallbackFonts;
 use crate::intent::Intent;
+use crate::job::Event;
 use crate::panels;
+use crate::platform::current::CurrentThreads;
+use crate::platform::{Dialogs, Threads};
 use crate::plot;
 use crate::shortcuts;
+use crate::state::built_in;
 use crate::state::interface::Interface;
 use crate::state::saved::{SMALLEST_WINDOW, Settings};
 use crate::state::{Effect, State};
 use crate::theme;
-use crate::worker::Worker;
 
 /// In windows narrower than this, in points, not all panels are open at first.
 const NARROW_WINDOW: f32 = 1000.0;
@@ -24,7 +28,9 @@ const NARROW_WINDOW: f32 = 1000.0;
 pub struct Viewer {
     /// The samples, the settings and the fits.
     pub state: State,
-    worker: Worker,
+    threads: CurrentThreads,
+    events: EventSender,
+    receiver: Receiver<Event>,
     dialogs: Box<dyn Dialogs>,
     settings: Settings,
     when_opened: Vec<Intent>,
@@ -40,9 +46,13 @@ impl Viewer {
             state.report_note(note.clone());
         }
         let ctx = ctx.clone();
+        let (sender, receiver) = channel();
+        let events = EventSender::new(sender, move || ctx.request_repaint());
         Self {
             state,
-            worker: Worker::new(move || ctx.request_repaint()),
+            threads: CurrentThreads::new(events.clone()),
+            events,
+            receiver,
             dialogs,
             settings,
             when_opened: Vec::new(),
@@ -63,6 +73,22 @@ impl Viewer {
                 self.state.reopen(&source);
             }
         }
+    }
+
+    /// Opens the files of the last session and an entry of the built-in menu, which a link asks for. It is
+    /// active; if it was open, it is not opened again.
+    pub fn open_linked(&mut self, entry: usize) {
+        if !self.settings.saved.open.is_empty() {
+            self.open_at_start(Vec::new());
+        }
+        let source = built_in::source_of(entry);
+        let mut samples = self.state.samples.iter();
+        let open = samples.find(|sample| Some(sample.source.as_str()) == source);
+        let intent = match open.map(|sample| sample.id) {
+            Some(id) => Intent::Activate(id),
+            None => Intent::OpenBuiltIn(entry),
+        };
+        self.when_opened(vec![intent]);
     }
 
     /// Applies intents once all files that are being read are open.
@@ -95,6 +121,7 @@ impl Viewer {
             self.state.commit();
         }
         self.carry_out_effects(&ctx);
+        self.threads.end_cancelled();
         self.save_settings(&ctx);
     }
 
@@ -108,7 +135,7 @@ impl Viewer {
     }
 
     fn take_events(&mut self) {
-        for event in self.worker.take_events() {
+        while let Ok(event) = self.receiver.try_recv() {
             self.state.take_event(event);
         }
         if self.state.files_being_read == 0 {
@@ -118,7 +145,7 @@ impl Viewer {
     }
 
     fn keys_and_drops(&self, ctx: &egui::Context) -> Vec<Intent> {
-        let mut intents = panels::drop::intents(ctx);
+        let mut intents = panels::drop::intents(ctx, self.events.clone());
         if self.state.dialog.is_none() {
             let pressed = shortcuts::pressed(ctx).into_iter();
             intents.extend(pressed.map(Intent::Command));
@@ -192,15 +219,15 @@ impl Viewer {
         }
         for effect in effects {
             match effect {
-                Effect::Job(job) => self.worker.start(job),
+                Effect::Job(job) => self.threads.start(job),
                 Effect::Copy(text) => ctx.copy_text(text),
                 Effect::CopyImage(image) => ctx.copy_image(image),
                 Effect::AskOpen if self.dialogs.available() => {
-                    self.dialogs.open(self.worker.events());
+                    self.dialogs.open(self.events.clone());
                 }
                 Effect::AskOpen => self.state.ask_path(),
                 Effect::AskExport(kind, path) if self.dialogs.available() => {
-                    self.dialogs.export(kind, &path, self.worker.events());
+                    self.dialogs.export(kind, &path, self.events.clone());
                 }
                 Effect::AskExport(kind, path) => self.state.ask_export(kind, &path),
                 Effect::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
@@ -210,9 +237,9 @@ impl Viewer {
 
     /// Saves the settings if they have changed and nothing is being dragged or read.
     fn save_settings(&mut self, ctx: &egui::Context) {
-        let Some(path) = &self.settings.path else {
+        if self.settings.storage.is_none() {
             return;
-        };
+        }
         let size = ctx.content_rect().size();
         let window = [
             size.x.max(SMALLEST_WINDOW[0]),
@@ -223,13 +250,18 @@ impl Viewer {
         if dragging || self.state.files_being_read > 0 || current == self.settings.saved {
             return;
         }
-        if let Err(error) = current.write(path) {
-            self.state
-                .report_note(format!("the settings cannot be saved: {error}"));
-            // Without a path there is no second attempt, and no second message.
-            self.settings.path = None;
-        }
         self.settings.saved = current;
+        let notes = match self.settings.write(&self.state.files_of_session()) {
+            Ok(notes) => notes,
+            Err(error) => {
+                // Without a storage there is no second attempt, and no second message.
+                self.settings.storage = None;
+                vec![format!("the settings cannot be saved: {error}")]
+            }
+        };
+        for note in notes {
+            self.state.report_note(note);
+        }
     }
 }
 

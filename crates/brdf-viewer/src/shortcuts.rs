@@ -4,6 +4,8 @@ use egui::{Key, KeyboardShortcut, Modifiers, Popup};
 
 use crate::intent::Command;
 use crate::output_kind::{FigureFormat, OutputKind};
+use crate::platform::Host;
+use crate::platform::current::CurrentHost;
 
 const NONE: Modifiers = Modifiers::NONE;
 const COMMAND: Modifiers = Modifiers::COMMAND;
@@ -133,8 +135,14 @@ impl Command {
         }
     }
 
-    /// The key.
+    /// The key, where it reaches the program.
     pub fn shortcut(self) -> Option<KeyboardShortcut> {
+        let reaches = CurrentHost::offers(self) && CurrentHost::has_key(self);
+        self.key().filter(|_| reaches)
+    }
+
+    /// The key.
+    pub fn key(self) -> Option<KeyboardShortcut> {
         let (modifiers, key) = match self {
             Self::Open => (COMMAND, Key::O),
             Self::OpenPath => (SHIFTED, Key::O),
@@ -186,6 +194,22 @@ impl Command {
     }
 }
 
+/// Whether a key alone, or together with Ctrl or Command, is one of the program and not of a text. `name` is that of
+/// browsers. Keys that browsers use as well, such as F5, are taken from them.
+pub fn is_key_of_program(name: &str, command: bool) -> bool {
+    let Some(key) = Key::from_name(name).or_else(|| Key::from_name(&name.to_uppercase())) else {
+        return false;
+    };
+    let commands = MENUS.iter().flat_map(|menu| menu.entries.iter().flatten());
+    let mut shortcuts = commands
+        .filter(|command| !command.belongs_to_text())
+        .filter_map(|command| command.shortcut());
+    shortcuts.any(|shortcut| {
+        let takes_command = shortcut.modifiers.command || shortcut.modifiers.ctrl;
+        shortcut.logical_key == key && takes_command == command
+    })
+}
+
 /// The commands whose keys were pressed.
 pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
     let editing = ctx.text_edit_focused();
@@ -206,4 +230,25 @@ pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
             .map(|(command, _)| command)
             .collect()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn keys_of_the_program_are_told_from_those_of_texts() {
+        for (name, command, expected) in [
+            ("F5", false, true),
+            ("F5", true, false),
+            ("e", true, true),
+            ("E", true, true),
+            ("e", false, false),
+            ("z", true, false),
+            ("F12", false, false),
+            ("Dead", true, false),
+        ] {
+            assert_eq!(is_key_of_program(name, command), expected, "{name}");
+        }
+    }
 }

@@ -7,9 +7,11 @@
 mod common;
 
 use std::path::Path;
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use brdf_viewer::intent::Intent;
+use brdf_viewer::platform::current::SettingsFile;
 use brdf_viewer::state::saved::Settings;
 use common::{NoDialogs, Window, drop_file, drop_path, window_with, z307};
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
@@ -72,7 +74,10 @@ fn random_events_do_not_crash_the_window() {
     // Files that are written by chance must not end up in the project.
     std::env::set_current_dir(folder.path()).unwrap();
     let mut random = StdRng::seed_from_u64(seed);
-    let settings = || Settings::load(Some(folder.path().join("settings/state.json")));
+    let settings = || {
+        let path = folder.path().join("settings/state.json");
+        Settings::load(Some(Rc::new(SettingsFile::new(path))))
+    };
     let mut window = window_with([1280.0, 800.0], NoDialogs, settings());
     window.state_mut().state.fit_settings.on_opening = true;
     let scan = folder.path().join("scan.csv");

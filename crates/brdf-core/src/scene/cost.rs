@@ -1,6 +1,6 @@
 //! The time of an evaluation on the present machine.
 
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 use super::probe::{Probe, single_value};
 use crate::evaluator::{Evaluator, Precision};

@@ -1,6 +1,6 @@
 //! The fastest evaluator that meets the requirements of a scene.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::cost::{TIMED, cost};
 use super::probe::{Errors, Probe};

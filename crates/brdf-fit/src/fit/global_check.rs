@@ -1,6 +1,6 @@
 //! The check of a fit against the global optimum.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use brdf_core::ModelParameters;
 

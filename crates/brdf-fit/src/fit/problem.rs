@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
-use std::time::Instant;
+use web_time::Instant;
 
 use brdf_core::check_refractive_index;
 use brdf_core::{ModelParameters, Parameters};

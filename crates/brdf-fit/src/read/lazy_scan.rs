@@ -12,9 +12,9 @@ use crate::scan::Measurements;
 
 /// The readings of one wavelength of a file, which are read when they are needed.
 #[derive(Debug, Clone, PartialEq)]
-#[expect(
+#[allow(
     clippy::large_enum_variant,
-    reason = "there is one for each wavelength, and nearly all are loaded"
+    reason = "there is one for each wavelength, and nearly all are loaded; on 32 bits it is no lint"
 )]
 pub enum LazyScan {
     /// The readings are in memory.

@@ -90,7 +90,7 @@ pub struct Report {
 }
 
 /// How much a report computes beside the fit and its uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Depth {
     /// Nothing.
     Fit,

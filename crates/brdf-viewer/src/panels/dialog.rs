@@ -3,6 +3,8 @@
 use egui::{Context, Grid, Id, Key, Modal, TextEdit, Ui};
 
 use crate::intent::Intent;
+use crate::platform::Host;
+use crate::platform::current::CurrentHost;
 use crate::shortcuts::MENUS;
 use crate::state::State;
 use crate::state::id::SampleId;
@@ -94,6 +96,9 @@ fn show_about(ui: &mut Ui, intents: &mut Vec<Intent>) {
         "The three-parameter BRDF of Li, Yan and Wu (Acta Optica Sinica 22(7), 769, 2002), fitted \
          in two stages to goniometer scans.",
     );
+    if let Some(note) = CurrentHost::NOTE {
+        ui.label(note);
+    }
     ui.label(format!("Version {}", env!("CARGO_PKG_VERSION")));
     ui.separator();
     Grid::new("keys")

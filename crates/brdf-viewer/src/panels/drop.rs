@@ -2,25 +2,19 @@
 
 use egui::{Align2, Color32, Context, Id, LayerId, Order, TextStyle};
 
+use crate::events::EventSender;
 use crate::intent::Intent;
+use crate::platform::Files;
+use crate::platform::current::CurrentFiles;
 
-/// The intents for dropped files. A file with an absolute path is read by the worker; others come
-/// with their content. While files are dragged over the window, a hint is shown.
-pub fn intents(ctx: &Context) -> Vec<Intent> {
+/// The intents for dropped files; others follow as events. While files are dragged over the window, a hint
+/// is shown.
+pub fn intents(ctx: &Context, events: EventSender) -> Vec<Intent> {
     if ctx.input(|input| !input.raw.hovered_files.is_empty()) {
         show_hint(ctx);
     }
     let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-    let intents = dropped.iter().map(|file| {
-        let path = file.path().to_owned();
-        match file.bytes() {
-            Ok(bytes) if !path.is_absolute() => {
-                Intent::OpenBytes(path.display().to_string(), bytes)
-            }
-            _ => Intent::Open(vec![path]),
-        }
-    });
-    intents.collect()
+    CurrentFiles::take_dropped(dropped, events)
 }
 
 fn show_hint(ctx: &Context) {

@@ -4,6 +4,8 @@ use brdf_fit::{Convention, Side};
 use egui::{Button, MenuBar, Panel, Ui};
 
 use crate::intent::{Command, Intent};
+use crate::platform::Host;
+use crate::platform::current::CurrentHost;
 use crate::shortcuts::{MENUS, Menu};
 use crate::state::{State, built_in};
 
@@ -22,12 +24,16 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 }
 
 fn show_entries(ui: &mut Ui, state: &State, menu: &Menu, intents: &mut Vec<Intent>) {
-    for entry in menu.entries {
+    let is_offered = |entry: &Option<Command>| entry.is_some_and(CurrentHost::offers);
+    for (i, entry) in menu.entries.iter().enumerate() {
         match entry {
-            Some(command) => show_command(ui, state, *command, intents),
-            None => {
+            Some(command) if CurrentHost::offers(*command) => {
+                show_command(ui, state, *command, intents);
+            }
+            None if menu.entries[i..].iter().any(is_offered) => {
                 ui.separator();
             }
+            Some(_) | None => {}
         }
         if *entry == Some(Command::OpenPath) {
             show_recent(ui, state, intents);

@@ -16,11 +16,22 @@ use crate::state::parameters::EditedParameters;
 use crate::state::sample::{Sample, Scan};
 use crate::widgets::{choose, named};
 
+/// In windows narrower than this, in points, the panel is below the plot: a telephone held upright.
+const NARROW: f32 = 640.0;
+
 /// Draws the panel: the card of the result and the model scroll, the buttons of the fit stay below.
 pub fn show_panel(ui: &mut Ui, above: impl FnOnce(&mut Ui), fit: impl FnOnce(&mut Ui)) {
-    let panel = Panel::right("parameters")
-        .default_size(325.0)
-        .size_range(300.0..=460.0);
+    let panel = if ui.available_width() < NARROW {
+        let height = ui.available_height();
+        Panel::bottom("parameters below")
+            .resizable(true)
+            .default_size(0.5 * height)
+            .size_range(0.3 * height..=0.7 * height)
+    } else {
+        Panel::right("parameters")
+            .default_size(325.0)
+            .size_range(300.0..=460.0)
+    };
     panel.show(ui, |ui| {
         Panel::bottom("fit").resizable(false).show(ui, fit);
         ScrollArea::vertical().auto_shrink(false).show(ui, above);

@@ -7,6 +7,8 @@ use egui::{Color32, Panel, RichText, Role, ScrollArea, TextStyle, Ui, vec2};
 
 use super::{incidences, result, wavelengths};
 use crate::intent::Intent;
+use crate::platform::Host;
+use crate::platform::current::CurrentHost;
 use crate::plot::items::mark_at;
 use crate::state::State;
 use crate::state::sample::Sample;
@@ -23,6 +25,9 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
         ui.strong("Samples");
         if state.samples.is_empty() {
             ui.label("No sample is open. Drop a scan here, or use the menus File and Built-in.");
+        }
+        if let Some(note) = CurrentHost::NOTE {
+            ui.weak(note);
         }
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             for sample in &state.samples {

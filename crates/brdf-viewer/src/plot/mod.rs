@@ -21,6 +21,8 @@ use brdf_fit::plot::{Curve, Layout, mark};
 use egui::{CentralPanel, Ui, Vec2};
 
 use crate::intent::Intent;
+use crate::platform::Host;
+use crate::platform::current::CurrentHost;
 use crate::state::State;
 use crate::state::id::SampleId;
 use crate::state::solid::Solid;
@@ -70,9 +72,10 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
 fn show_hint(ui: &mut Ui, state: &State) {
     ui.centered_and_justified(|ui| {
         ui.label(if state.samples.is_empty() {
-            "Drop a scan here, or open one from the menu File or Built-in."
+            let note = CurrentHost::NOTE.unwrap_or_default();
+            format!("Drop a scan here, or open one from the menu File or Built-in. {note}")
         } else {
-            "All samples are hidden."
+            "All samples are hidden.".to_owned()
         });
     });
 }

@@ -1,5 +1,7 @@
 //! The built-in samples: measured ones of the project, and Table 1 of the paper.
 
+use std::path::Path;
+
 use brdf_core::published::PUBLISHED;
 use brdf_fit::Convention;
 use brdf_fit::Measurements;
@@ -59,6 +61,22 @@ pub fn entry_of(source: &str) -> Option<usize> {
     let measured = MEASURED.iter().map(|(path, _)| (*path).to_owned());
     let published = PUBLISHED.iter().map(published_name);
     measured.chain(published).position(|known| known == source)
+}
+
+/// The names of the measured samples in links to a page: those of their files without extension.
+pub fn link_names() -> impl Iterator<Item = String> {
+    let stem = |path: &str| Some(Path::new(path).file_stem()?.to_str()?.to_owned());
+    MEASURED.iter().filter_map(move |(path, _)| stem(path))
+}
+
+/// The index of the entry with a name in links.
+pub fn entry_named(name: &str) -> Option<usize> {
+    link_names().position(|known| known == name)
+}
+
+/// The source of a measured entry.
+pub fn source_of(entry: usize) -> Option<&'static str> {
+    MEASURED.get(entry).map(|(path, _)| *path)
 }
 
 /// The content of the measured sample with a source.

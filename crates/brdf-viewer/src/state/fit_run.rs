@@ -1,8 +1,7 @@
 //! A run of the worker over one or more fits: its queue, its progress and its errors.
 
-use std::time::Instant;
-
 use brdf_fit::{Part, Phase, Step};
+use web_time::Instant;
 
 use super::convergence::ConvergencePoint;
 use super::id::{SampleId, ScanId};

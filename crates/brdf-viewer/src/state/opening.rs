@@ -204,6 +204,20 @@ impl State {
         self.recent.truncate(MOST_RECENT);
     }
 
+    /// The files that the next session needs: those of the open samples, and the recently opened ones.
+    pub fn files_of_session(&self) -> Vec<&Path> {
+        let samples = self.samples.iter();
+        let of_samples = samples.flat_map(|sample| {
+            let joined = &sample.scan().measurements.read_settings.joined;
+            let joined = joined.iter().map(|file| Path::new(file.as_str()));
+            let own = [Path::new(&sample.source)].into_iter();
+            own.chain(sample.file.as_deref()).chain(joined)
+        });
+        of_samples
+            .chain(self.recent.iter().map(PathBuf::as_path))
+            .collect()
+    }
+
     /// Whether a path leads to an open scan, or to the fit that contains it.
     pub fn is_open(&self, path: &Path) -> bool {
         let path = brdf_fit::output::resolved(path);

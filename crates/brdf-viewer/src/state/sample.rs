@@ -19,6 +19,8 @@ use super::convergence::ConvergencePoint;
 use super::history::{Change, Edited};
 use super::id::{SampleId, ScanId};
 use super::parameters::EditedParameters;
+use crate::platform::Files;
+use crate::platform::current::CurrentFiles;
 
 /// Incidence angles of a theory without readings, in degrees: those of the paper's scans.
 const THEORY_PSI_DEG: [f64; 5] = [15.0, 30.0, 45.0, 60.0, 75.0];
@@ -358,7 +360,7 @@ impl Sample {
             description: description.unwrap_or_default().to_owned(),
             source: opened.source,
             convention: Convention::default(),
-            modified: opened.file.as_deref().and_then(modified),
+            modified: opened.file.as_deref().and_then(CurrentFiles::modified),
             has_changed_on_disk: false,
             file: opened.file,
             samples_in_source,
@@ -376,7 +378,7 @@ impl Sample {
 
     /// Notes whether the file of the readings has changed since it was opened.
     pub fn check_file(&mut self) {
-        let now = self.file.as_deref().and_then(modified);
+        let now = self.file.as_deref().and_then(CurrentFiles::modified);
         self.has_changed_on_disk = now.is_some() && now != self.modified;
     }
 
@@ -439,11 +441,6 @@ impl Sample {
             wavelength,
         }
     }
-}
-
-/// When a file was last changed.
-fn modified(file: &Path) -> Option<SystemTime> {
-    file.metadata().ok()?.modified().ok()
 }
 
 /// The name of a row of Table 1.

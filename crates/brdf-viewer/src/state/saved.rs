@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use brdf_core::ModelParameters;
-use brdf_fit::output::{WriteError, write_file};
 use brdf_fit::plot::View;
 use brdf_fit::{Convention, Model};
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,7 @@ use super::interface::Interface;
 use super::parameters::EditedParameters;
 use super::sample::{Sample, Scan};
 use super::solid::SolidView;
+use crate::platform::{SaveError, Storage};
 
 /// Version of the file format.
 const VERSION: u32 = 1;
@@ -198,39 +199,11 @@ impl Default for Saved {
     }
 }
 
-/// The result of reading the settings.
-#[derive(Debug, Clone, PartialEq)]
-pub enum ReadResult {
-    /// There is no file, as in the first session.
-    Missing,
-    /// The settings of the last session.
-    Valid(Box<Saved>),
-    /// The file cannot be used, and a message for the user.
-    Damaged(String),
-}
-
-/// Why the settings cannot be saved.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum SaveError {
-    /// The folder cannot be created.
-    #[error("{}: {error}", folder.display())]
-    Folder {
-        /// The folder.
-        folder: PathBuf,
-        /// The error of the system.
-        error: std::io::Error,
-    },
-    /// The file cannot be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
-
-/// The settings with their file.
+/// The settings with the place that keeps them.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// The file; `None` saves nothing.
-    pub path: Option<PathBuf>,
+    /// The place; `None` saves nothing.
+    pub storage: Option<Rc<dyn Storage>>,
     /// The settings as they were saved last.
     pub saved: Saved,
     /// A message for the user.
@@ -241,62 +214,66 @@ impl Settings {
     /// Default settings that are not saved.
     pub fn in_memory() -> Self {
         Self {
-            path: None,
+            storage: None,
             saved: Saved::default(),
             note: None,
         }
     }
 
-    /// Reads the settings of a file, or the default ones if it cannot be used.
-    pub fn load(path: Option<PathBuf>) -> Self {
-        let Some(file) = &path else {
+    /// Reads the settings, or takes the default ones if they cannot be used. A damaged text is set aside,
+    /// so that it is not lost.
+    pub fn load(storage: Option<Rc<dyn Storage>>) -> Self {
+        let Some(place) = storage else {
             return Self::in_memory();
         };
-        let (saved, note) = match Saved::read(file) {
-            ReadResult::Missing => (Saved::default(), None),
-            ReadResult::Valid(saved) => (*saved, None),
-            ReadResult::Damaged(note) => (Saved::default(), Some(note)),
+        let read = match place.read() {
+            Ok(None) => Ok(Saved::default()),
+            Ok(Some(text)) => Saved::parse(&text),
+            Err(error) => Err(error.to_string()),
         };
-        Self { path, saved, note }
+        let (saved, note) = match read {
+            Ok(saved) => (saved, None),
+            Err(problem) => (Saved::default(), Some(set_aside(&*place, &problem))),
+        };
+        Self {
+            storage: Some(place),
+            saved,
+            note,
+        }
+    }
+
+    /// Writes the settings, and returns what the user must know. `files` are those of the session.
+    ///
+    /// # Errors
+    ///
+    /// The settings cannot be written.
+    pub fn write(&self, files: &[&Path]) -> Result<Vec<String>, SaveError> {
+        match &self.storage {
+            Some(place) => place.write(&self.saved.text(), files),
+            None => Ok(Vec::new()),
+        }
     }
 }
 
 impl Saved {
-    /// Reads a file. A damaged file is renamed, so that its content is not lost.
-    pub fn read(path: &Path) -> ReadResult {
-        let text = match std::fs::read_to_string(path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-                return ReadResult::Missing;
-            }
-            Err(error) => return ReadResult::Damaged(set_aside(path, &error.to_string())),
-        };
-        match serde_json::from_str::<Self>(&text) {
-            Ok(saved) => match saved.problem() {
-                None => ReadResult::Valid(Box::new(saved)),
-                Some(problem) => ReadResult::Damaged(set_aside(path, &problem)),
-            },
-            Err(error) => ReadResult::Damaged(set_aside(path, &error.to_string())),
-        }
-    }
-
-    /// Writes the settings. The file is replaced only when it is complete.
+    /// Parses a text that the viewer has written.
     ///
     /// # Errors
     ///
-    /// The folder cannot be created, or the file cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), SaveError> {
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|error| SaveError::Folder {
-                folder: folder.to_owned(),
-                error,
-            })?;
+    /// What is wrong with it.
+    fn parse(text: &str) -> Result<Self, String> {
+        let saved: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        match saved.problem() {
+            None => Ok(saved),
+            Some(problem) => Err(problem),
         }
-        write_file(path, |writer| {
-            serde_json::to_writer_pretty(&mut *writer, self)?;
-            writer.write_all(b"\n")
-        })?;
-        Ok(())
+    }
+
+    /// The settings as text.
+    fn text(&self) -> String {
+        // Neither the keys nor the values of the settings can fail to be written.
+        let text = serde_json::to_string_pretty(self).unwrap_or_default();
+        format!("{text}\n")
     }
 
     /// A value that is not valid, as text.
@@ -325,35 +302,40 @@ impl Saved {
     }
 }
 
-/// Renames a damaged file, and returns a message for the user.
-fn set_aside(path: &Path, problem: &str) -> String {
-    let aside = path.with_extension("damaged");
-    let outcome = match std::fs::rename(path, &aside) {
-        Ok(()) => format!("the file is kept as {}", aside.display()),
+/// Sets a damaged text aside, and returns a message for the user.
+fn set_aside(place: &dyn Storage, problem: &str) -> String {
+    let outcome = match place.set_aside() {
+        Ok(aside) => format!("the file is kept as {aside}"),
         Err(error) => format!("the file cannot be renamed ({error})"),
     };
     format!(
         "{}: the saved settings cannot be used ({problem}): expected a file written by the viewer; \
          the defaults are used, and {outcome}",
-        path.display()
+        place.name()
     )
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::platform::current::SettingsFile;
+
+    fn file(path: &Path) -> Rc<dyn Storage> {
+        Rc::new(SettingsFile::new(path.to_owned()))
+    }
 
     #[test]
     fn written_settings_are_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep").join("state.json");
-        assert_eq!(Saved::read(&path), ReadResult::Missing);
-        let mut saved = Saved::default();
-        saved.view.residuals = true;
-        saved.interface.dark = Some(true);
-        saved.recent = vec![PathBuf::from("a.csv")];
-        saved.write(&path).unwrap();
-        assert_eq!(Saved::read(&path), ReadResult::Valid(Box::new(saved)));
+        let mut settings = Settings::load(Some(file(&path)));
+        assert_eq!(settings.saved, Saved::default());
+        settings.saved.view.residuals = true;
+        settings.saved.interface.dark = Some(true);
+        settings.saved.recent = vec![PathBuf::from("a.csv")];
+        assert_eq!(settings.write(&[]).unwrap(), Vec::<String>::new());
+        let again = Settings::load(Some(file(&path)));
+        assert_eq!((again.saved, again.note), (settings.saved, None));
     }
 
     #[test]
@@ -372,9 +354,9 @@ mod tests {
         for text in bad {
             assert_ne!(text, good);
             std::fs::write(&path, &text).unwrap();
-            let ReadResult::Damaged(note) = Saved::read(&path) else {
-                panic!("{text:?} was accepted");
-            };
+            let settings = Settings::load(Some(file(&path)));
+            assert_eq!(settings.saved, Saved::default(), "{text:?}");
+            let note = settings.note.unwrap();
             assert!(
                 note.contains("state.json") && note.contains("defaults"),
                 "{note}"

@@ -5,11 +5,11 @@ use std::ops::ControlFlow;
 
 use brdf_fit::read::ReadError;
 use brdf_fit::report::{Depth, ModelChoice, Report};
-use brdf_fit::{Observer, Step};
+use brdf_fit::{FitOptions, Measurements, Observer, Step};
 
-use super::events::EventSender;
 use super::panics::catch_panics;
 use crate::cancel::CancelFlag;
+use crate::events::EventSender;
 use crate::job::{Event, FitJob, FitJobs};
 use crate::state::id::ScanId;
 
@@ -39,7 +39,7 @@ impl Observer for FitObserver<'_> {
 
 /// Carries out fits, unless they are cancelled, and sends their results as events. `closing` cancels
 /// all of them.
-pub(super) fn fit_all(jobs: FitJobs, closing: &CancelFlag, events: &EventSender) {
+pub fn fit_all(jobs: FitJobs, closing: &CancelFlag, events: &EventSender) {
     for job in jobs.fits {
         let observer = FitObserver {
             scan: job.scan,
@@ -73,24 +73,44 @@ fn fit(job: &FitJob, depth: Depth, observer: &FitObserver) -> Result<Report, Rea
         Some(table) => table.measurements()?,
         None => Cow::Borrowed(&*job.measurements),
     };
-    let choice = ModelChoice::Given;
-    let of_job = |report: Report| Report {
-        left_out: job.left_out.clone(),
-        ..report
-    };
-    let send_found = |found: &Report| {
-        if depth > Depth::Fit && !observer.is_cancelled() {
-            let found = Box::new(of_job(found.clone()));
+    let send_found = |found: Report| {
+        if !observer.is_cancelled() {
+            let found = Box::new(found);
             observer.events.send(Event::Found(job.scan, found));
         }
     };
-    let (report, _) = Report::observed_in_parts(
+    let (options, left_out) = (&job.options, &job.left_out);
+    Ok(report(
         &measurements,
-        &job.options,
-        choice,
+        options,
+        left_out,
         depth,
         observer,
         &send_found,
-    );
-    Ok(of_job(report))
+    ))
+}
+
+/// The report on a fit of readings. `send_found` takes the fit before its analysis, where there is one.
+/// `left_out` are the indices of the readings of the scan that are not among these.
+pub fn report(
+    measurements: &Measurements,
+    options: &FitOptions,
+    left_out: &[usize],
+    depth: Depth,
+    observer: &dyn Observer,
+    send_found: &dyn Fn(Report),
+) -> Report {
+    let of_scan = |report: Report| Report {
+        left_out: left_out.to_vec(),
+        ..report
+    };
+    let found = |found: &Report| {
+        if depth > Depth::Fit {
+            send_found(of_scan(found.clone()));
+        }
+    };
+    let choice = ModelChoice::Given;
+    let (report, _) =
+        Report::observed_in_parts(measurements, options, choice, depth, observer, &found);
+    of_scan(report)
 }

@@ -1,93 +1,23 @@
-//! The worker: carries out the jobs that take longer than a frame.
+//! The worker: carries out the jobs that take longer than a frame, beside the window: see
+//! [`Threads`](crate::platform::Threads).
 //!
-//! One thread opens and writes files, another one fits. Both only call `brdf_fit`, so that their
-//! numbers are those of the command line.
+//! It only calls `brdf_fit`, so that its numbers are those of the command line.
 
-mod events;
 mod fit;
 mod open;
 mod panics;
 mod write;
 
 use std::error::Error;
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::thread;
 
-use crate::cancel::CancelFlag;
-use crate::job::{Event, FileJob, FitJobs, Job, Output};
+use crate::job::{Event, FileJob, Output};
 use panics::catch_panics;
 
-pub use events::EventSender;
+pub use fit::{fit_all, report};
+pub use open::extensions;
 
-/// The threads of the worker. Dropping it cancels the fits.
-pub struct Worker {
-    files: Sender<FileJob>,
-    fits: Sender<FitJobs>,
-    events: EventSender,
-    receiver: Receiver<Event>,
-    closing: CancelFlag,
-}
-
-impl Worker {
-    /// Starts the threads. `wake` is called after each event.
-    pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
-        let (sender, receiver) = channel();
-        let events = EventSender::new(sender, wake);
-        let (files, file_jobs) = channel::<FileJob>();
-        let answers = events.clone();
-        thread::spawn(move || {
-            for job in file_jobs {
-                answers.send(work_on_file(job));
-            }
-        });
-        let (fits, fit_jobs) = channel::<FitJobs>();
-        let closing = CancelFlag::default();
-        let (answers, cancel) = (events.clone(), closing.clone());
-        thread::spawn(move || {
-            for jobs in fit_jobs {
-                fit::fit_all(jobs, &cancel, &answers);
-            }
-        });
-        Self {
-            files,
-            fits,
-            events,
-            receiver,
-            closing,
-        }
-    }
-
-    /// Queues a job.
-    pub fn start(&self, job: Job) {
-        // Sending cannot fail: the threads run until the queues are dropped with the worker.
-        match job {
-            Job::Fit(jobs) => {
-                let _ = self.fits.send(jobs);
-            }
-            Job::File(job) => {
-                let _ = self.files.send(job);
-            }
-        }
-    }
-
-    /// A sender of events, for dialogs.
-    pub fn events(&self) -> EventSender {
-        self.events.clone()
-    }
-
-    /// Removes and returns the events so far.
-    pub fn take_events(&self) -> Vec<Event> {
-        self.receiver.try_iter().collect()
-    }
-}
-
-impl Drop for Worker {
-    fn drop(&mut self) {
-        self.closing.cancel();
-    }
-}
-
-fn work_on_file(job: FileJob) -> Event {
+/// Opens or writes a file, and answers with an event.
+pub fn work_on_file(job: FileJob) -> Event {
     match job {
         FileJob::Open(path, convention) => match run(|| open::open(&path, convention)) {
             Ok(opened) => Event::Opened(Some(path), opened),

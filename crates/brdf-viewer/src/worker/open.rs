@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use brdf_fit::Measurements;
 use brdf_fit::read::{LazyScan, ReadError, ReadOptions};
 use brdf_fit::report::{Document, DocumentError, Report};
-use brdf_fit::{Convention, Side};
+use brdf_fit::{Convention, Format, Measurements, Side};
 
+use crate::platform::Files;
+use crate::platform::current::CurrentFiles;
 use crate::state::built_in;
 use crate::state::sample::{Opened, Scan};
 
@@ -25,9 +26,8 @@ pub(super) enum OpenError {
     Fit(#[from] DocumentError),
     /// The scan of a fit is missing.
     #[error(
-        "{}: is a fit of {scan}, which cannot be found: expected the scan at the path given in the \
-         fit, or in the folder of the fit",
-        fit.display()
+        "{}: is a fit of {scan}, which cannot be found: expected the scan {}",
+        fit.display(), CurrentFiles::PLACE_OF_SCANS
     )]
     ScanNotFound {
         /// The path of the fit.
@@ -55,7 +55,7 @@ pub(super) enum OpenError {
 /// The file cannot be read, or a fit names a scan that cannot be found.
 pub(super) fn open(path: &Path, convention: Convention) -> Result<Vec<Opened>, OpenError> {
     // Reading a pipe could block this thread, and all following jobs, forever.
-    if path.exists() && !path.is_file() {
+    if CurrentFiles::is_special(path) {
         return Err(OpenError::NotRegular(path.to_owned()));
     }
     if is_fit(path) {
@@ -83,6 +83,13 @@ pub(super) fn open_bytes(
         file: None,
         scans: read_content(name, bytes, &read_options(convention))?,
     })
+}
+
+/// The extensions of all scan formats, of plain text, and of fits.
+pub fn extensions() -> Vec<&'static str> {
+    let formats = Format::NAMED.into_iter();
+    let of_formats = formats.flat_map(|(format, _)| format.extensions().iter().copied());
+    of_formats.chain(["txt", "dat", "json"]).collect()
 }
 
 fn is_fit(path: &Path) -> bool {
@@ -116,7 +123,7 @@ fn options_of(report: &Report) -> ReadOptions {
 /// The scans of a file. A table is sampled at the directions of a goniometer, because it has no
 /// incidences of its own.
 fn read_scan(path: &Path, options: &ReadOptions) -> Result<Vec<Scan>, OpenError> {
-    let scans = LazyScan::open(path, options)?.into_iter();
+    let scans = CurrentFiles::scans(path, options)?.into_iter();
     let scan = |lazy: LazyScan| {
         let mut scan = Scan::new(lazy.plotted()?.into_owned());
         scan.table = Some(lazy).filter(LazyScan::is_in_file);
@@ -133,7 +140,7 @@ fn read_content(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Vec<S
 
 /// Opens the scans of a document of fits, with their fits.
 fn open_fit(path: &Path) -> Result<Vec<Opened>, OpenError> {
-    let document = Document::read(path)?;
+    let document = CurrentFiles::document(path)?;
     let mut files: Vec<(&str, &[String], ReadOptions)> = Vec::new();
     for report in &document.reports {
         let joined = report.read_settings.joined.as_slice();
@@ -205,7 +212,7 @@ fn read_scan_of_fit(
         .into_iter()
         .flatten()
     {
-        if path.is_file() {
+        if CurrentFiles::is_file(&path) {
             let scans = read_scan(&path, options)?;
             return Ok((Some(path), scans));
         }

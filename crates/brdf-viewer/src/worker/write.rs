@@ -7,7 +7,6 @@ use std::sync::Arc;
 use brdf_core::{AnyBrdf, Geometry, ParameterError};
 use brdf_fit::Measurements;
 use brdf_fit::format::two_digits;
-use brdf_fit::output::{self, write_file};
 use brdf_fit::plot::{self, Figure, PlotError, View, figure_of, write_theory_alone};
 use brdf_fit::report::{Document, Report, write_theory};
 
@@ -16,6 +15,8 @@ use image::RgbaImage;
 
 use crate::job::{Drawing, FigureLayer, LobeDrawing, Output};
 use crate::output_kind::FigureFormat;
+use crate::platform::current::CurrentFiles;
+use crate::platform::{self, Files};
 use crate::solid::surface::Composition;
 use crate::solid::{lobe_figure, write_obj};
 use crate::state::parameters::EditedParameters;
@@ -61,7 +62,7 @@ pub(super) enum WriteError {
     Fits(#[from] serde_json::Error),
     /// The file cannot be written.
     #[error(transparent)]
-    File(#[from] output::WriteError),
+    File(#[from] platform::WriteError),
 }
 
 /// Writes a file. It is replaced only when it is complete.
@@ -71,7 +72,7 @@ pub(super) enum WriteError {
 /// The output cannot be drawn or formatted, or the file cannot be written.
 pub(super) fn write(path: &Path, output: &Output) -> Result<(), WriteError> {
     // Writing to a pipe could block this thread, and all following jobs, forever.
-    if path.exists() && !path.is_file() {
+    if CurrentFiles::is_special(path) {
         return Err(WriteError::NotRegular(path.to_owned()));
     }
     let bytes = match output {
@@ -80,7 +81,7 @@ pub(super) fn write(path: &Path, output: &Output) -> Result<(), WriteError> {
         Output::Curves(measurements, parameters, psi) => curves(measurements, parameters, psi)?,
         Output::Fit(reports, _) => fits(reports)?,
     };
-    write_file(path, |writer| writer.write_all(&bytes))?;
+    CurrentFiles::write(path, &bytes)?;
     Ok(())
 }
 

@@ -8,11 +8,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use brdf_viewer::Viewer;
-use brdf_viewer::dialogs::Dialogs;
+use brdf_viewer::events::EventSender;
 use brdf_viewer::output_kind::OutputKind;
+use brdf_viewer::platform::Dialogs;
 use brdf_viewer::raster::Rasteriser;
 use brdf_viewer::state::saved::Settings;
-use brdf_viewer::worker::EventSender;
 use egui::accesskit::Role;
 use egui::epaint::{ColorMode, Shape};
 use egui::{Color32, Pos2};

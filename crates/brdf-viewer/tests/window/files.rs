@@ -2,6 +2,7 @@
 //! between sessions.
 
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use crate::common::{
     NoDialogs, Window, click, click_role, drop_file, drop_path, empty, enter_path, menu,
@@ -9,12 +10,13 @@ use crate::common::{
 };
 use brdf_fit::report::{Depth, Document, Report};
 use brdf_fit::{Convention, FitOptions, Measurements, RefractiveIndex, Side};
-use brdf_viewer::dialogs::Dialogs;
+use brdf_viewer::events::EventSender;
 use brdf_viewer::intent::Intent;
 use brdf_viewer::job::Event;
 use brdf_viewer::output_kind::OutputKind;
+use brdf_viewer::platform::Dialogs;
+use brdf_viewer::platform::current::SettingsFile;
 use brdf_viewer::state::saved::Settings;
-use brdf_viewer::worker::EventSender;
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 
@@ -476,7 +478,7 @@ fn the_parameter_table_goes_to_the_clipboard() {
 fn the_settings_of_the_last_session_are_restored() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.json");
-    let settings = || Settings::load(Some(path.clone()));
+    let settings = || Settings::load(Some(Rc::new(SettingsFile::new(path.clone()))));
     let mut window = window_with([1000.0, 700.0], NoDialogs, settings());
     window.state_mut().open_at_start(Vec::new());
     settle(&mut window);

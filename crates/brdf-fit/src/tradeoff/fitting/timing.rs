@@ -1,7 +1,7 @@
 //! The times of alternatives that are compared.
 
 use std::hint::black_box;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Smallest number of runs of each alternative.
 const FEWEST: usize = 3;

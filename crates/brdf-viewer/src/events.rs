@@ -1,4 +1,4 @@
-//! The channel through which threads send events to the window.
+//! The channel through which jobs and dialogs send events to the window.
 
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
@@ -14,7 +14,7 @@ pub struct EventSender {
 
 impl EventSender {
     /// Sends events into a channel, and calls `wake` after each.
-    pub(super) fn new(sender: Sender<Event>, wake: impl Fn() + Send + Sync + 'static) -> Self {
+    pub fn new(sender: Sender<Event>, wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             sender,
             wake: Arc::new(wake),

@@ -3,21 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::thread;
 
-use brdf_fit::Format;
-
+use crate::events::EventSender;
 use crate::job::Event;
 use crate::output_kind::OutputKind;
-use crate::worker::EventSender;
-
-/// File dialogs. Tests replace them by none, or by ones that answer immediately.
-pub trait Dialogs {
-    /// Whether file dialogs are available.
-    fn available(&self) -> bool;
-    /// Asks for files to open, and answers with [`Event::FilesChosen`].
-    fn open(&self, events: EventSender);
-    /// Asks for the path of a file to write, and answers with [`Event::OutputChosen`].
-    fn export(&self, kind: OutputKind, suggested: &Path, events: EventSender);
-}
+use crate::platform::Dialogs;
+use crate::worker::extensions;
 
 /// The file dialogs of the system.
 #[derive(Debug, Default)]
@@ -55,13 +45,6 @@ impl Dialogs for NativeDialogs {
             }
         });
     }
-}
-
-/// The extensions of all scan formats, of plain text, and of fits.
-fn extensions() -> Vec<&'static str> {
-    let formats = Format::NAMED.into_iter();
-    let of_formats = formats.flat_map(|(format, _)| format.extensions().iter().copied());
-    of_formats.chain(["txt", "dat", "json"]).collect()
 }
 
 /// Whether there is a session bus, through which desktops provide their dialogs.

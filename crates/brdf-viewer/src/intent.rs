@@ -86,6 +86,10 @@ pub enum Intent {
     Tab(ResultTab),
     /// Set the text of the path field of the open dialog.
     Path(String),
+    /// Plan the next readings of the current scan.
+    Plan,
+    /// Copy the planned readings to the clipboard.
+    CopyPlan,
     /// Confirm the open dialog: open or write its path.
     Confirm,
     /// Replace the open dialog by a dialog of the system.

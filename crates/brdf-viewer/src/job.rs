@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use brdf_fit::Convention;
 use brdf_fit::Step;
+use brdf_fit::planning::MeasurementPlan;
 use brdf_fit::plot::{Ground, View};
 use brdf_fit::read::LazyScan;
 use brdf_fit::report::{Depth, Report};
@@ -42,6 +43,8 @@ pub enum FileJob {
     Draw(Drawing),
     /// Write a file.
     Write(PathBuf, Output),
+    /// Plan the next readings of a scan.
+    Plan(ScanId, Arc<Measurements>),
 }
 
 /// Fits of scans, one after the other.
@@ -167,4 +170,10 @@ pub enum Event {
     Drawn(ColorImage),
     /// A file could not be written, and the error message.
     WriteFailed(String),
+    /// The next readings of a scan were planned, or cannot be, with the readings that it has.
+    Planned(
+        ScanId,
+        Arc<Measurements>,
+        Result<Box<MeasurementPlan>, String>,
+    ),
 }

@@ -98,6 +98,25 @@ impl fmt::Display for Region {
     }
 }
 
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Continue => f.write_str("further readings lower the error"),
+            Self::Enough => f.write_str(
+                "enough: the error is within the tolerance, and two further readings would hardly change it",
+            ),
+            Self::Misfit(Region::Everywhere) => f.write_str(
+                "more readings of this kind will not help: what is left is the misfit of the model, no direction more \
+                 than others",
+            ),
+            Self::Misfit(region) => write!(
+                f,
+                "more readings of this kind will not help: what is left is the misfit of the model, most of all at {region}"
+            ),
+        }
+    }
+}
+
 impl Advice {
     /// From the predicted errors: now, after two more readings, and the smallest that readings of the instrument leave.
     pub(super) fn new(state: &State, now: f64, after_two: f64, limit: f64, tolerance: f64) -> Self {

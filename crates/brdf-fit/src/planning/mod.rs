@@ -20,6 +20,7 @@ mod criterion;
 mod error;
 mod errors;
 mod instrument;
+mod list;
 mod planner;
 mod prior;
 mod review;
@@ -31,6 +32,7 @@ pub use advice::{Advice, Region};
 pub use error::PlanError;
 pub use errors::ErrorModel;
 pub use instrument::{Instrument, SlowAxis};
+pub use list::{error_percent, rounded_deg};
 pub use planner::{
     MeasurementPlan, PlanOptions, PlannedReading, Prediction, choose_readings, plan_readings,
     predict,

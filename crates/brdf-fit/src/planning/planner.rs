@@ -1,7 +1,7 @@
 //! The next readings of a scan.
 
 use brdf_core::ModelParameters;
-use brdf_core::scene::Domain;
+use brdf_core::scene::{Azimuth, Domain};
 
 use super::advice::{Advice, WORTHWHILE};
 use super::criterion::Criterion;
@@ -12,13 +12,16 @@ use super::prior::{MaterialClass, Prior, parameters};
 use super::scene_points::{directions, thinned};
 use super::setting::{Setting, Site};
 use super::state::{Reading, State};
-use crate::scan::Measurements;
+use crate::scan::{Measurement, Measurements};
 
 /// More candidates are thinned evenly: a plan over 2000 takes about a second.
 const MOST_CANDIDATES: usize = 2000;
 
 /// Settings that differ by less are one, in radians: 0.5 deg.
 const SAME_SETTING: f64 = 0.008_727;
+
+/// The largest angle of a scene, in radians: 89.9 deg.
+const LARGEST_ANGLE: f64 = 1.569;
 
 /// What is to be known, and what can be measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -207,6 +210,30 @@ pub fn predict(
 }
 
 impl PlanOptions {
+    /// The same options for the directions that a scan spans: incidences and views from 0 to its largest, in the plane
+    /// of incidence where all its readings are.
+    #[must_use]
+    pub fn within(self, scan: &Measurements) -> Self {
+        let readings = scan.readings();
+        let largest = |of: fn(&Measurement) -> f64| {
+            let largest = readings.iter().map(of).fold(0.0, f64::max);
+            (0.0, largest.min(LARGEST_ANGLE))
+        };
+        let azimuth = if readings
+            .iter()
+            .all(|reading| reading.in_plane_theta().is_some())
+        {
+            Azimuth::InPlane
+        } else {
+            Azimuth::Full
+        };
+        let scene = Domain::new(largest(|r| r.psi), largest(|r| r.theta.abs()), azimuth);
+        Self {
+            scene: scene.unwrap_or(self.scene),
+            ..self
+        }
+    }
+
     fn check(&self) -> Result<(), PlanError> {
         let instrument = &self.instrument;
         let positive = [
@@ -386,12 +413,10 @@ fn drive(
 
 #[cfg(test)]
 mod tests {
-    use brdf_core::scene::Azimuth;
     use brdf_core::{AnyBrdf, Family};
 
     use super::*;
     use crate::planning::advice::Region;
-    use crate::scan::Measurement;
 
     fn options() -> PlanOptions {
         let to = 80_f64.to_radians();

@@ -13,6 +13,7 @@ use super::hover::{show_residuals, show_values};
 use super::items::{self, Drawing};
 use super::limits;
 use super::navigation::navigate;
+use super::planned;
 use crate::intent::Intent;
 
 /// The fraction of the height that the residuals occupy.
@@ -254,11 +255,21 @@ fn show_values_plot(
     let plot = reset_on_demand(ui, context.state, placement.name, plot);
     let home = [[-90.0, 90.0], [end(context.range.0), end(context.range.1)]];
     let mut shows_all = true;
+    let planned_colour = ui.visuals().strong_text_color();
     let response = plot.show(ui, |plot_ui| {
         navigate(plot_ui, home);
         for (i, drawn) in curves.iter().enumerate() {
             plot_ui.add(curve_item(format!("curve {i}"), view, axis, drawn));
         }
+        let psi =
+            (view.layout == Layout::Panels).then(|| curves.first().map(|drawn| drawn.curve.psi));
+        let points = planned::points(context, psi.flatten());
+        plot_ui.add(Drawing::new(
+            "planned readings".to_owned(),
+            move |transform, shapes| {
+                planned::draw(transform, axis, &points, planned_colour, shapes);
+            },
+        ));
         shows_all = plot_ui.auto_bounds().any();
     });
     if view.layout == Layout::Together {

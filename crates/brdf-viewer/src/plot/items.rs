@@ -290,6 +290,21 @@ pub fn used_and_left_out(
     shapes.extend(visible.map(|position| Shape::circle_stroke(position, 1.4 * MARK, stroke)));
 }
 
+/// A hollow diamond at a position of the plot, larger than the mark of a reading; `None` outside the plot.
+pub fn mark_outline(transform: &PlotTransform, at: [f64; 2], stroke: Stroke) -> Option<Shape> {
+    let position = screen_position(transform, at);
+    let size = 2.0 * MARK;
+    let is_visible = transform.frame().expand(size).contains(position);
+    let corners = [
+        vec2(size, 0.0),
+        vec2(0.0, size),
+        vec2(-size, 0.0),
+        vec2(0.0, -size),
+    ];
+    let corners = corners.map(|corner| position + corner);
+    is_visible.then(|| Shape::closed_line(corners.to_vec(), stroke))
+}
+
 /// The theories that stay in the plot, each with a dash pattern of its own.
 pub fn ghosts(
     transform: &PlotTransform,

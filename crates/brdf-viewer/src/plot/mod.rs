@@ -10,6 +10,7 @@ pub mod items;
 mod limits;
 mod lobe;
 mod navigation;
+mod planned;
 mod polar;
 pub mod radius;
 mod solid_toolbar;

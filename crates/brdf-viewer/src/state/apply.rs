@@ -66,6 +66,8 @@ impl State {
             Intent::Fit(stages, scope) => self.fit(stages, scope),
             Intent::Write(kind, path) => self.write(kind, path),
             Intent::Tab(tab) => self.interface.tab = tab,
+            Intent::Plan => self.plan(),
+            Intent::CopyPlan => self.copy_plan(),
             Intent::Path(text) => self.set_path(text),
             Intent::Confirm => self.confirm(),
             Intent::Browse => self.browse(),
@@ -123,6 +125,7 @@ impl State {
                 self.effects.push(Effect::CopyImage(image));
             }
             Event::WriteFailed(error) => self.report_error(error),
+            Event::Planned(scan, readings, plan) => self.take_plan(scan, readings, plan),
         }
     }
 }

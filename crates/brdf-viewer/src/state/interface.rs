@@ -26,6 +26,8 @@ pub enum ResultTab {
     Reflectance,
     /// E against iteration.
     Convergence,
+    /// The readings to take next.
+    Plan,
     /// Everything that the command line prints.
     #[serde(alias = "tables")]
     Report,
@@ -33,7 +35,7 @@ pub enum ResultTab {
 
 impl ResultTab {
     /// All tabs.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Summary,
         Self::Models,
         Self::Wavelengths,
@@ -41,6 +43,7 @@ impl ResultTab {
         Self::Profile,
         Self::Reflectance,
         Self::Convergence,
+        Self::Plan,
         Self::Report,
     ];
 
@@ -54,6 +57,7 @@ impl ResultTab {
             Self::Profile => "Profile",
             Self::Reflectance => "Reflectance",
             Self::Convergence => "Iterations",
+            Self::Plan => "Plan",
             Self::Report => "Report",
         }
     }

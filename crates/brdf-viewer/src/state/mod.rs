@@ -23,6 +23,7 @@ pub mod interface;
 mod opening;
 mod parameter_table;
 pub mod parameters;
+mod planning;
 pub mod sample;
 pub mod saved;
 pub mod solid;

@@ -10,6 +10,7 @@ use brdf_core::published::PublishedSample;
 use brdf_fit::Convention;
 use brdf_fit::FitProblem;
 use brdf_fit::output::resolved;
+use brdf_fit::planning::MeasurementPlan;
 use brdf_fit::read::LazyScan;
 use brdf_fit::report::Report;
 use brdf_fit::{FitOptions, Measurements, RefractiveIndex};
@@ -103,6 +104,8 @@ pub struct Scan {
     pub convergence: Vec<ConvergencePoint>,
     /// The error message of a later fit, if that has failed.
     pub fit_error: Option<String>,
+    /// The plan of its next readings, with the readings that it was made from.
+    pub plan: Option<(Arc<Measurements>, Box<MeasurementPlan>)>,
     /// Whether a fit that the user has asked for, or a choice of readings, is not in a file.
     pub has_unsaved_work: bool,
 }
@@ -191,6 +194,7 @@ impl Scan {
             last_fit: None,
             convergence: Vec::new(),
             fit_error: None,
+            plan: None,
             has_unsaved_work: false,
         }
     }

@@ -10,6 +10,8 @@ mod write;
 
 use std::error::Error;
 
+use brdf_fit::planning::{PlanOptions, plan_readings};
+
 use crate::job::{Event, FileJob, Output};
 use panics::catch_panics;
 
@@ -43,6 +45,12 @@ pub fn work_on_file(job: FileJob) -> Event {
             }
             Err(error) => Event::WriteFailed(error.to_string()),
         },
+        FileJob::Plan(scan, measurements) => {
+            let options = PlanOptions::default().within(&measurements);
+            let plan = run(|| plan_readings(Some(&measurements), &options));
+            let plan = plan.map(Box::new).map_err(|error| error.to_string());
+            Event::Planned(scan, measurements, plan)
+        }
     }
 }
 

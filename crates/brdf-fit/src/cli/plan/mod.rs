@@ -1,7 +1,6 @@
 //! `brdf plan`: which angles to measure next, and when to stop.
 
 mod arguments;
-mod output;
 mod text;
 
 pub(super) use arguments::Arguments;
@@ -43,10 +42,10 @@ impl Arguments {
         }
         let plan = plan_readings(scan.as_ref().map(|scan| &scan.measurements), &options)?;
         if let Some(path) = &self.csv {
-            stream::write(path, |writer| output::csv(&plan, &options, writer))?;
+            stream::write(path, |writer| writer.write_all(plan.csv().as_bytes()))?;
         }
         if let Some(path) = &self.list {
-            stream::write(path, |writer| output::list(&plan, writer))?;
+            stream::write(path, |writer| writer.write_all(plan.list().as_bytes()))?;
         }
         if outputs.iter().any(|(_, path)| stream::is_stream(path)) {
             return Ok(());

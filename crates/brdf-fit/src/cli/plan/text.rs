@@ -4,28 +4,16 @@ use std::fmt::Write as _;
 
 use brdf_core::scene::Azimuth;
 
-use crate::format::{counted, in_degrees, shortest, two_digits};
+use crate::format::{counted, two_digits};
 use crate::planning::{
-    Advice, Gap, MeasurementPlan, PlanOptions, PlannedReading, Prediction, REVIEW_WITHIN, Region,
-    Review, Setting,
+    Advice, Gap, MeasurementPlan, PlanOptions, PlannedReading, Prediction, REVIEW_WITHIN, Review,
+    Setting, error_percent as percent, rounded_deg,
 };
 use crate::report::{Column, Row, Table};
 use crate::scan::Measurements;
 
-/// The rms error of ln f_r as a percentage of f_r.
-pub(super) fn percent(error: f64) -> String {
-    format!("{} %", two_digits(100.0 * error.exp_m1()))
-}
-
-/// An angle in degrees, without the digits of rounding.
-pub(super) fn rounded_deg(radians: f64) -> String {
-    // Minus zero is zero.
-    let degrees = (1e6 * in_degrees(radians)).round() / 1e6 + 0.0;
-    shortest(degrees)
-}
-
 /// The directions of the scene and the tolerance.
-pub(super) fn scene(options: &PlanOptions) -> String {
+fn scene(options: &PlanOptions) -> String {
     let range =
         |(from, to): (f64, f64)| format!("{} ... {} deg", rounded_deg(from), rounded_deg(to));
     let domain = &options.scene;
@@ -54,7 +42,8 @@ pub(super) fn plan(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOpt
     let _ = write!(text, "\n{}", table(&plan.readings, &plan.now).text());
     text.push_str(
         "error: predicted rms error of f_r over the scene after the readings up to this one; k2, kD, k1, n - 1: their\n\
-         predicted standard errors; rank: the order in which the readings were chosen\n",
+         predicted standard errors; rank: the order in which the readings were chosen\n\
+         then: brdf fit FILE --model three+n --weights relative\n",
     );
     text
 }
@@ -105,41 +94,23 @@ fn errors_now(plan: &MeasurementPlan) -> String {
 }
 
 fn advice(plan: &MeasurementPlan, options: &PlanOptions) -> String {
-    match plan.advice {
-        Advice::Enough => "enough: the error is within the tolerance, and two further readings would hardly change \
-                           it"
-        .to_owned(),
-        Advice::Misfit(region) => misfit(region),
-        _ => {
-            let last = plan.readings.last();
-            let seconds = last.map_or(0.0, |reading| reading.seconds);
-            let error = last.map_or(plan.now.error, |reading| reading.prediction.error);
-            let reached = if error <= options.tolerance.ln_1p() {
-                ""
-            } else {
-                ", still above the tolerance: plan again with their values"
-            };
-            format!(
-                "take {} in {}: predicted error {}{reached}",
-                counted(plan.readings.len(), "reading"),
-                duration(seconds),
-                percent(error)
-            )
-        }
+    if plan.advice != Advice::Continue {
+        return plan.advice.to_string();
     }
-}
-
-fn misfit(region: Region) -> String {
-    match region {
-        Region::Everywhere => {
-            "more readings of this kind will not help: what is left is the misfit of the model, no \
-                               direction more than others"
-                .to_owned()
-        }
-        _ => format!(
-            "more readings of this kind will not help: what is left is the misfit of the model, most of all at {region}"
-        ),
-    }
+    let last = plan.readings.last();
+    let seconds = last.map_or(0.0, |reading| reading.seconds);
+    let error = last.map_or(plan.now.error, |reading| reading.prediction.error);
+    let reached = if error <= options.tolerance.ln_1p() {
+        ""
+    } else {
+        ", still above the tolerance: plan again with their values"
+    };
+    format!(
+        "take {} in {}: predicted error {}{reached}",
+        counted(plan.readings.len(), "reading"),
+        duration(seconds),
+        percent(error)
+    )
 }
 
 /// A time in minutes or hours.

@@ -1,6 +1,7 @@
 //! The panel at the bottom: what the fit means, in tabs.
 
 mod models;
+mod plan;
 mod plots;
 mod residuals;
 mod tables;
@@ -44,6 +45,7 @@ pub fn show(ui: &mut Ui, state: &State, intents: &mut Vec<Intent>) {
             ResultTab::Convergence => {
                 plots::show_convergence(ui, plots::convergence(state, sample));
             }
+            ResultTab::Plan => plan::show(ui, state, sample.scan(), intents),
             ResultTab::Profile => plots::show_profile(ui, sample.scan()),
             ResultTab::Reflectance => {
                 plots::show_reflectance(ui, state.derived.reflectance(sample.scan_id()));

@@ -9,12 +9,12 @@ use egui_plot::PlotTransform;
 use super::axis::Axis;
 use super::context::PlotContext;
 use super::items::mark_outline;
-use crate::state::sample::Scan;
+use crate::state::sample::{Sample, Scan};
 
 /// The planned readings of the active scan that are in the shown plane: the angle on the axis in degrees, and the
 /// value of the theory there; with `psi` those of this incidence alone.
 pub(super) fn points(context: &PlotContext, psi: Option<f64>) -> Vec<[f64; 2]> {
-    let Some(scan) = context.state.active_sample().map(|sample| sample.scan()) else {
+    let Some(scan) = context.state.active_sample().map(Sample::scan) else {
         return Vec::new();
     };
     let Some(plan) = scan.current_plan() else {

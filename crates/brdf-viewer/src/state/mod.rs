@@ -134,6 +134,8 @@ pub struct State {
     pub system_dark: bool,
     /// The number of files that are being read.
     pub files_being_read: usize,
+    /// The number of plans of readings that the worker makes.
+    pub plans_being_made: usize,
     /// The values derived from the data, the view and the parameters.
     pub derived: Derived,
     /// The lobe and the pictures of the surface.
@@ -291,7 +293,7 @@ impl State {
 
     /// Whether the worker is fitting or reading.
     pub fn is_busy(&self) -> bool {
-        self.is_fitting() || self.files_being_read > 0
+        self.is_fitting() || self.files_being_read + self.plans_being_made > 0
     }
 
     /// The texts of all error messages.

@@ -25,6 +25,7 @@ impl State {
             return;
         };
         let job = FileJob::Plan(sample.scan_id(), Arc::clone(sample.scan().used()));
+        self.plans_being_made += 1;
         self.start(Job::File(job));
     }
 
@@ -35,6 +36,7 @@ impl State {
         readings: Arc<Measurements>,
         plan: Result<Box<MeasurementPlan>, String>,
     ) {
+        self.plans_being_made = self.plans_being_made.saturating_sub(1);
         match plan {
             Ok(plan) => {
                 if let Some(scan) = self.scan_mut(id) {

@@ -186,3 +186,28 @@ fn residuals_have_three_forms_and_stay_aligned_with_the_plot() {
         assert!(texts.iter().any(|(text, _)| text.contains(axis)), "{name}");
     }
 }
+
+#[test]
+fn readings_are_suggested_with_what_they_change_and_copied() {
+    let mut window = with_z307();
+    let scan = |window: &Window| window.state().state.active_sample().unwrap().scan().clone();
+    // Ten of the readings.
+    let id = window.state().state.active_sample().unwrap().scan_id();
+    let most = (0..112).filter(|i| i % 12 != 0).collect();
+    let leave_out = Intent::ToggleReadings(id, most);
+    window.state_mut().state.apply(leave_out);
+    settle(&mut window);
+    click(&mut window, "Plan");
+    click(&mut window, "Suggest readings");
+    settle(&mut window);
+    let plan = scan(&window).current_plan().cloned().unwrap();
+    assert!(!plan.readings.is_empty(), "{plan:?}");
+    assert!(shows(&window, "Standard errors: k2"));
+    click(&mut window, "Copy list");
+    assert_eq!(window.state().state.status, "planned readings copied");
+    // Another choice of readings needs another plan.
+    let use_all = Intent::UseAllReadings(id);
+    window.state_mut().state.apply(use_all);
+    settle(&mut window);
+    assert!(scan(&window).current_plan().is_none());
+}

@@ -8,14 +8,14 @@ use brdf_fit::Model;
 use brdf_viewer::intent::{Command, Intent};
 use brdf_viewer::state::angle_range::End;
 use brdf_viewer::state::fit_settings::Scope;
-use brdf_viewer::state::id::SampleId;
+use brdf_viewer::state::id::{SampleId, ScanId};
 use brdf_viewer::state::interface::ResultTab;
 use brdf_viewer::state::saved::Settings;
 
 const SIZES: [[f32; 2]; 2] = [[900.0, 600.0], [1280.0, 800.0]];
 
 /// The states of the window of which there are snapshots.
-const STATES: [&str; 12] = [
+const STATES: [&str; 13] = [
     "empty",
     "loaded",
     "fitted",
@@ -27,6 +27,7 @@ const STATES: [&str; 12] = [
     "compared",
     "limits",
     "wavelengths",
+    "planned",
     "error",
 ];
 
@@ -79,6 +80,16 @@ fn bring_to(window: &mut Window, state: &str) {
         "wavelengths" => {
             apply(Intent::Command(Command::FitAll));
             apply(Intent::Tab(ResultTab::Wavelengths));
+        }
+        "planned" => {
+            let scan = ScanId {
+                sample: SampleId(0),
+                wavelength: 0,
+            };
+            let most = (0..112).filter(|i| i % 12 != 0).collect();
+            apply(Intent::ToggleReadings(scan, most));
+            apply(Intent::Tab(ResultTab::Plan));
+            apply(Intent::Plan);
         }
         "error" => {
             let text = "psi_deg,theta_deg,brdf_per_sr\n10,0,0.1\n10,9x,0.2\n";

@@ -31,7 +31,7 @@
 //!
 //! Without default features the crate has no programs, figures, exports or trade-offs: it reads,
 //! fits, assesses and reports. `plot` adds figures, `export` forms for other programs, `tradeoff`
-//! measured trade-offs, `workbook` spreadsheets, `cube` arrays of NumPy; `cli` (the default) enables all of them
+//! measured trade-offs, `planning` the next readings of a scan, `workbook` spreadsheets, `cube` arrays of NumPy; `cli` (the default) enables all of them
 //! and adds the programs `brdf` and `fit`. `parquet` writes the fits of an array as Parquet as well.
 
 pub mod batch;

@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, _: &State, scan: &Scan, intents: &mut Vec<Intent
     };
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
         ui.label(format!("{} over the scan's range of angles.", errors(plan)));
-        ui.label(format!("{}.", plan.advice));
+        ui.label(format!("Advice: {}.", plan.advice));
         if !plan.readings.is_empty() {
             ui.label(changes(plan));
             show_list(ui, plan);

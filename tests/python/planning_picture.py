@@ -3,8 +3,9 @@
     measure-planning FOLDER curves > curves.csv
     python tests/python/planning_picture.py curves.csv docs/planning.svg
 
-A line is the median over the scans, its band reaches to the scan at nine tenths. A grid exists for some numbers
-of readings only: between them its error is that of the next smaller grid.
+A line is the median over the samples, each of which counts by the median over its wavelengths; its band reaches to
+the sample at nine tenths. A grid exists for some numbers of readings only: between them its error is that of the
+next smaller grid.
 """
 
 import csv
@@ -26,12 +27,13 @@ COUNTS = range(5, 81)
 
 
 def read(path):
-    """The errors by strategy and scan: pairs of readings and error, ascending."""
-    curves = defaultdict(lambda: defaultdict(list))
+    """The errors by strategy, sample and wavelength: pairs of readings and error."""
+    curves = defaultdict(lambda: defaultdict(lambda: defaultdict(list)))
     with open(path, newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):
             point = (int(row["readings"]), float(row["error_over_full"]))
-            curves[row["strategy"]][row["scan"]].append(point)
+            sample, _, wavelength = row["scan"].rpartition(" ")
+            curves[row["strategy"]][sample][wavelength].append(point)
     return curves
 
 
@@ -46,13 +48,17 @@ def quantile(values, fraction):
     return values[round(fraction * (len(values) - 1))]
 
 
+def of_sample(wavelengths, count):
+    return quantile([at(sorted(points), count) for points in wavelengths.values()], 0.5)
+
+
 def main(source, target):
     curves = read(source)
     plt.rcParams.update({"svg.hashsalt": "planning", "font.size": 10})
     figure, axes = plt.subplots(figsize=(7.2, 4.2))
     for strategy, colour in STRATEGIES.items():
-        scans = curves[strategy].values()
-        errors = [[at(sorted(points), count) for points in scans] for count in COUNTS]
+        samples = curves[strategy].values()
+        errors = [[of_sample(sample, count) for sample in samples] for count in COUNTS]
         median = [quantile(of_count, 0.5) for of_count in errors]
         high = [min(quantile(of_count, 0.9), 10.0) for of_count in errors]
         axes.plot(COUNTS, median, color=colour, label=strategy)

@@ -1,13 +1,16 @@
 //! Prints the tables of `docs/planning.md`: how many readings a scan needs.
 //!
 //! The arguments are a folder with measured samples and their table of optima, or `simulated`; with `curves`
-//! behind it, the errors by the number of readings are printed as CSV instead of the table.
+//! behind it, the errors by the number of readings are printed as CSV instead of the table; with `predictions`, the
+//! errors of planned fits over those that were predicted.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 use brdf_fit::planning::{PlanOptions, REVIEW_WITHIN};
-use brdf_tests::planning::{Needed, Strategy, curves_csv, measured, ratios, simulated, table};
+use brdf_tests::planning::{
+    Needed, Strategy, curves_csv, measured, predictions, ratios, simulated, table,
+};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -20,6 +23,10 @@ fn main() -> ExitCode {
     } else {
         measured(Path::new(source))
     };
+    if arguments.get(1).is_some_and(|word| word == "predictions") {
+        print!("{}", predictions(&samples, &PlanOptions::default()));
+        return ExitCode::SUCCESS;
+    }
     let strategies = Strategy::ALL;
     let all = Needed::of_all(&samples, &strategies, &PlanOptions::default());
     if arguments.get(1).is_some_and(|word| word == "curves") {

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use brdf_fit::planning::{PlanOptions, REVIEW_WITHIN};
+use brdf_fit::planning::{PlanOptions, REVIEW_WITHIN, choose_readings};
 use rayon::prelude::*;
 
-use super::{Choices, Sample, Strategy, error_of};
+use super::{Choices, Sample, Strategy, error_of, predicted_error};
 
 /// The multiples of the error of the whole scan that count as reached.
 const WITHIN: [f64; 2] = REVIEW_WITHIN;
@@ -109,12 +109,48 @@ pub fn curves_csv(all: &[Needed], strategies: &[Strategy]) -> String {
             for (count, error) in &choices.0 {
                 let _ = writeln!(
                     text,
-                    "\"{}\",{},{count},{error:.4}",
+                    "\"{}\",\"{}\",{count},{error:.4}",
                     needed.name,
                     strategy.name()
                 );
             }
         }
+    }
+    text
+}
+
+/// The numbers of readings at which predictions are compared with what came out.
+const PREDICTED_AT: [usize; 6] = [6, 8, 10, 12, 16, 24];
+
+/// A table in Markdown of the errors of planned fits over those that were predicted.
+pub fn predictions(samples: &[Sample], options: &PlanOptions) -> String {
+    let most = PREDICTED_AT[PREDICTED_AT.len() - 1];
+    let of_sample = |sample: &Sample| -> Vec<f64> {
+        let scan = &sample.scan;
+        let chosen = choose_readings(scan, &[], most, options).expect("one wavelength");
+        let ratio = |count: &usize| {
+            error_of(scan, &chosen[..*count]) / predicted_error(scan, &chosen[..*count], options)
+        };
+        PREDICTED_AT.iter().map(ratio).collect()
+    };
+    let ratios: Vec<Vec<f64>> = samples.par_iter().map(of_sample).collect();
+    let mut text = "| readings | median | nine tenths lie within | within a factor of 1.5 |\n|---|---|---|---|\n".to_owned();
+    for (i, count) in PREDICTED_AT.iter().enumerate() {
+        let mut own: Vec<f64> = ratios.iter().map(|ratios| ratios[i]).collect();
+        own.sort_by(f64::total_cmp);
+        let at = |part: usize| own[part * (own.len() - 1) / 20];
+        let near = own
+            .iter()
+            .filter(|r| (1.0 / 1.5..=1.5).contains(*r))
+            .count();
+        let _ = writeln!(
+            text,
+            "| {count} | {:.2} | {:.2} ... {:.2} | {near} of {} |",
+            at(10),
+            at(1),
+            at(19),
+            own.len()
+        );
     }
     text
 }

@@ -19,8 +19,8 @@ const HIGHEST: [f64; 4] = [100.0, 2.0, 10.0, 4.9];
 
 /// A kind of surface, with the parameters that are likely for it.
 ///
-/// The likely values are medians of the fits of `three+n` with relative weights to the measured samples of the
-/// class that were at hand, and wide: paints 8, anodised surfaces 6, bare metals 2. `Unknown` covers all of
+/// The likely values are near the geometric means of the fits of `three+n` to the measured scans of the class that were at
+/// hand, 10 of paints, 6 of anodised surfaces and 2 of bare metals, with wide distributions. `Unknown` covers all of
 /// them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

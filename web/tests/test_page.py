@@ -16,7 +16,7 @@ def test_the_page_says_that_it_loads_and_shows_a_sample_that_is_fitted(viewer, a
     raw = browser.new_page()
     raw.route("**/*.wasm", lambda route: route.abort())
     raw.goto(address, wait_until="commit")
-    raw.wait_for_function("document.getElementById('message').textContent.includes('cannot be loaded')")
+    raw.locator("#message", has_text="cannot be loaded").wait_for()
     raw.close()
     page = browser.new_page()
     page.route("**/viewer.js", lambda route: None)

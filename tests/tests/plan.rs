@@ -56,7 +56,7 @@ fn the_list_is_a_scan_that_fit_reads_once_it_is_filled() {
     };
     let truth = AnyBrdf::new(Family::Paper, &at).unwrap();
     let scene = ["--incidence", "0:75", "--view", "0:80", "--in-plane"];
-    let mut rows = "psi_deg,theta_deg,phi_deg,brdf_per_sr\n".to_owned();
+    let mut rows = String::new();
     for round in 0..6 {
         let mut arguments = scene.to_vec();
         arguments.extend(["--csv", list.to_str().unwrap()]);
@@ -69,19 +69,19 @@ fn the_list_is_a_scan_that_fit_reads_once_it_is_filled() {
             break;
         }
         assert!(round < 5, "{}", stdout(&output));
-        let planned = fs::read_to_string(&list).unwrap();
-        for row in planned
-            .lines()
-            .skip_while(|line| !line.starts_with("psi_deg"))
-            .skip(1)
-        {
-            let angles: Vec<f64> = row
-                .split(',')
-                .take(3)
+        // The readings so far are in the list as well.
+        rows.clear();
+        for line in fs::read_to_string(&list).unwrap().lines() {
+            let angles = line.strip_suffix(',').map(|row| row.split(','));
+            let Some(angles) = angles else {
+                writeln!(rows, "{line}").unwrap();
+                continue;
+            };
+            let angles: Vec<f64> = angles
                 .map(|x| x.parse::<f64>().unwrap().to_radians())
                 .collect();
             let geometry = Geometry::new(angles[0], angles[1], angles[2]).unwrap();
-            writeln!(rows, "{row}{}", truth.value(&geometry)).unwrap();
+            writeln!(rows, "{line}{}", truth.value(&geometry)).unwrap();
         }
         fs::write(&scan, &rows).unwrap();
     }

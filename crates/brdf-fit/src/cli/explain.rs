@@ -93,7 +93,7 @@ pub(super) fn plan(error: &PlanError) -> String {
         PlanError::Wavelengths(_) => with_hint(error, "--wavelength UM chooses one"),
         PlanError::NoSetting => with_hint(
             error,
-            "--incidence, --view, --largest-incidence, --largest-view, --step-incidence, --step-view",
+            "--incidence, --view, --from-source, --largest-incidence, --largest-view, --step-incidence, --step-view",
         ),
         _ => error.to_string(),
     }

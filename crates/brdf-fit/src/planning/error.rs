@@ -19,6 +19,14 @@ pub enum PlanError {
         /// Its value.
         value: f64,
     },
+    /// A table, of which everything was measured.
+    #[error("{count} readings: expected at most {most}, since a table needs no further ones")]
+    TooMany {
+        /// How many there are.
+        count: usize,
+        /// How many a plan goes on from.
+        most: usize,
+    },
     /// The instrument has no setting in the scene, or only those that the scan has already.
     #[error(
         "the instrument has no further setting within the scene: expected angles of the scene within its \

@@ -3,20 +3,35 @@
 use std::fmt::Write as _;
 
 use super::planner::MeasurementPlan;
-use crate::format::{in_degrees, shortest};
+use super::setting::Setting;
+use crate::format::{exact, in_degrees, shortest};
+use crate::scan::Measurements;
 
 impl MeasurementPlan {
-    /// A scan without values, as CSV in degrees and in the convention of the model: the column `brdf_per_sr` is empty,
-    /// and read as readings that were not taken until it is filled.
-    pub fn csv(&self) -> String {
+    /// The readings so far and the planned ones, as CSV in degrees and in the convention of the model: the cells
+    /// `brdf_per_sr` of the latter are empty, and read as readings that were not taken until they are filled. Standard
+    /// deviations are not written.
+    pub fn csv(&self, so_far: Option<&Measurements>) -> String {
         let mut text = String::from(
-            "# planned readings; theta is positive on the side of the source, the mirror direction is theta = -psi\n\
-             psi_deg,theta_deg,phi_deg,brdf_per_sr\n",
+            "# planned readings are empty; theta is positive on the side of the source, the mirror direction is theta = -psi\n",
         );
-        for reading in &self.readings {
-            let setting = &reading.setting;
+        let readings = so_far.map_or(&[][..], Measurements::readings);
+        let wavelength = readings.first().and_then(|reading| reading.wavelength_um);
+        let first = wavelength.map_or_else(String::new, |um| format!("{},", shortest(um)));
+        if wavelength.is_some() {
+            text.push_str("wavelength_um,");
+        }
+        text.push_str("psi_deg,theta_deg,phi_deg,brdf_per_sr\n");
+        let taken = readings
+            .iter()
+            .map(|reading| (Setting::from(reading), exact(reading.brdf)));
+        let planned = self
+            .readings
+            .iter()
+            .map(|reading| (reading.setting, String::new()));
+        for (setting, value) in taken.chain(planned) {
             let [psi, theta, phi] = [setting.psi, setting.theta, setting.phi].map(rounded_deg);
-            let _ = writeln!(text, "{psi},{theta},{phi},");
+            let _ = writeln!(text, "{first}{psi},{theta},{phi},{value}");
         }
         text
     }
@@ -41,7 +56,11 @@ pub fn rounded_deg(radians: f64) -> String {
     shortest(degrees)
 }
 
-/// A root mean square error of ln f_r as a percentage of f_r: 100 (e^error - 1), with two digits.
+/// A root mean square error of ln f_r as a percentage of f_r: 100 (e^error - 1), with two digits; `>900 %` beyond a factor
+/// of ten.
 pub fn error_percent(error: f64) -> String {
+    if error.is_nan() || error > 10_f64.ln() {
+        return ">900 %".to_owned();
+    }
     format!("{} %", crate::format::two_digits(100.0 * error.exp_m1()))
 }

@@ -304,7 +304,16 @@ impl PlanOptions {
     }
 }
 
+/// The largest number of readings that a plan goes on from.
+const MOST_READINGS: usize = 20_000;
+
+/// Checks that a scan is one that readings can be planned for.
 fn single_wavelength(scan: &Measurements) -> Result<(), PlanError> {
+    let count = scan.readings().len();
+    if count > MOST_READINGS {
+        let most = MOST_READINGS;
+        return Err(PlanError::TooMany { count, most });
+    }
     match scan.wavelengths().len() {
         0 | 1 => Ok(()),
         count => Err(PlanError::Wavelengths(count)),

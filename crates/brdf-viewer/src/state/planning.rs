@@ -49,10 +49,10 @@ impl State {
 
     /// Copies the planned readings of the current scan.
     pub(super) fn copy_plan(&mut self) {
-        let plan = self
-            .active_sample()
-            .and_then(|sample| sample.scan().current_plan());
-        let Some(text) = plan.map(MeasurementPlan::csv) else {
+        let Some(text) = self.active_sample().and_then(|sample| {
+            let plan = sample.scan().current_plan();
+            plan.map(|plan| plan.csv(None))
+        }) else {
             return;
         };
         "planned readings copied".clone_into(&mut self.status);

@@ -49,8 +49,8 @@ pub(in crate::cli) struct Arguments {
     #[command(flatten)]
     instrument: InstrumentArguments,
 
-    /// Write the list to this file, as CSV that brdf fit reads once the column brdf_per_sr is filled; - is standard
-    /// output
+    /// Write the readings so far and the list to this file, as CSV that brdf fit and brdf plan read once brdf_per_sr is
+    /// filled; - is standard output
     #[arg(long, value_name = "FILE")]
     pub(super) csv: Option<PathBuf>,
 
@@ -97,7 +97,7 @@ struct InstrumentArguments {
     seconds: f64,
 
     /// Time of a change of the slow axis, in seconds
-    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = not_negative)]
     seconds_change: f64,
 }
 
@@ -140,6 +140,14 @@ impl InstrumentArguments {
             reading_seconds: self.seconds,
             change_seconds: self.seconds_change,
         }
+    }
+}
+
+/// A number from 0 on.
+fn not_negative(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(number) if number >= 0.0 && f64::is_finite(number) => Ok(number),
+        _ => Err("expected a number from 0 on".to_owned()),
     }
 }
 

@@ -40,9 +40,10 @@ impl Arguments {
             let text = text::review(&review, &scan.measurements, &scan.name, &options);
             return print_text(&text).map_err(Failure::Print);
         }
-        let plan = plan_readings(scan.as_ref().map(|scan| &scan.measurements), &options)?;
+        let so_far = scan.as_ref().map(|scan| &scan.measurements);
+        let plan = plan_readings(so_far, &options)?;
         if let Some(path) = &self.csv {
-            stream::write(path, |writer| writer.write_all(plan.csv().as_bytes()))?;
+            stream::write(path, |writer| writer.write_all(plan.csv(so_far).as_bytes()))?;
         }
         if let Some(path) = &self.list {
             stream::write(path, |writer| writer.write_all(plan.list().as_bytes()))?;

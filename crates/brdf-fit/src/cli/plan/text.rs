@@ -41,7 +41,8 @@ pub(super) fn plan(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOpt
     }
     let _ = write!(text, "\n{}", table(&plan.readings, &plan.now).text());
     text.push_str(
-        "error: predicted rms error of f_r over the scene after the readings up to this one; k2, kD, k1, n - 1: their\n\
+        "angles in degrees, theta positive on the side of the source\n\
+         error: predicted rms error of f_r over the scene after the readings up to this one; k2, kD, k1, n - 1: their\n\
          predicted standard errors; rank: the order in which the readings were chosen\n\
          then: brdf fit FILE --model three+n --weights relative\n",
     );
@@ -87,7 +88,7 @@ fn errors_now(plan: &MeasurementPlan) -> String {
     }
     let _ = write!(
         text,
-        "; the best that readings of this instrument leave: {}",
+        "; the lowest found with further readings: {}",
         percent(plan.limit)
     );
     text
@@ -157,14 +158,7 @@ fn table(readings: &[PlannedReading], now: &Prediction) -> Table {
 
 fn predicted(prediction: &Prediction) -> impl Iterator<Item = String> {
     let each = std::iter::once(prediction.error).chain(prediction.deviations);
-    // Beyond a factor of ten a parameter is not known.
-    each.map(|error| {
-        if error > 10_f64.ln() {
-            "-".to_owned()
-        } else {
-            percent(error)
-        }
-    })
+    each.map(percent)
 }
 
 /// What a scan had and lacks.

@@ -119,12 +119,19 @@ impl fmt::Display for Advice {
 
 impl Advice {
     /// From the predicted errors: now, after two more readings, and the smallest that readings of the instrument leave.
-    pub(super) fn new(state: &State, now: f64, after_two: f64, limit: f64, tolerance: f64) -> Self {
+    /// `validated` is the cross-validated error.
+    pub(super) fn new(
+        state: &State,
+        validated: Option<f64>,
+        now: f64,
+        after_two: f64,
+        limit: f64,
+        tolerance: f64,
+    ) -> Self {
         if state.readings.len() < FEWEST {
             return Self::Continue;
         }
-        let validated = state.cross_validated().unwrap_or(f64::INFINITY);
-        let is_within = now.max(validated) <= tolerance;
+        let is_within = now.max(validated.unwrap_or(f64::INFINITY)) <= tolerance;
         let is_unchanged = |later: f64| later > (1.0 - WORTHWHILE) * now;
         if is_within && is_unchanged(after_two) {
             Self::Enough

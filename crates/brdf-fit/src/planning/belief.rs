@@ -72,12 +72,7 @@ impl Belief {
         error: f64,
         near: &Logs,
     ) -> Self {
-        let problem = Problem {
-            readings,
-            family,
-            prior,
-            precision: error.powi(-2),
-        };
+        let problem = Problem::new(readings, family, prior, error);
         let shifted = |shift: [f64; 4]| prior.mean + Logs::from(shift);
         let starts = [
             *near,
@@ -100,13 +95,7 @@ impl Belief {
         error: f64,
         start: &Logs,
     ) -> Self {
-        let problem = Problem {
-            readings,
-            family,
-            prior,
-            precision: error.powi(-2),
-        };
-        problem.descend(*start)
+        Problem::new(readings, family, prior, error).descend(*start)
     }
 
     /// Parameters that represent the distribution: its mode and both ends of a deviation along each axis of
@@ -134,7 +123,16 @@ struct Problem<'a> {
     precision: f64,
 }
 
-impl Problem<'_> {
+impl<'a> Problem<'a> {
+    fn new(readings: &'a [LogReading], family: Family, prior: &'a Prior, error: f64) -> Self {
+        Self {
+            readings,
+            family,
+            prior,
+            precision: error.powi(-2),
+        }
+    }
+
     fn misfit(&self, at: &Logs) -> f64 {
         let brdf = brdf(self.family, at);
         let of_reading =

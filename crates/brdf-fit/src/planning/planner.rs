@@ -107,7 +107,8 @@ pub struct MeasurementPlan {
 ///
 /// # Errors
 ///
-/// Several wavelengths, a quantity that is not positive, or no setting of the instrument within the scene.
+/// Several wavelengths, more than 20,000 readings, a quantity that is not positive, or no setting of the instrument
+/// within the scene.
 pub fn plan_readings(
     scan: Option<&Measurements>,
     options: &PlanOptions,
@@ -133,7 +134,16 @@ pub fn plan_readings(
         .errors
         .get(1)
         .map_or(now.error, |error| scale * error);
-    let advice = Advice::new(&state, now.error, after_two, limit, options.log_tolerance());
+    let cross_validated = state.cross_validated();
+    let tolerance = options.log_tolerance();
+    let advice = Advice::new(
+        &state,
+        cross_validated,
+        now.error,
+        after_two,
+        limit,
+        tolerance,
+    );
     let kept = match advice {
         Advice::Continue => options.kept(&chosen.errors, scale),
         Advice::Enough | Advice::Misfit(_) => 0,
@@ -143,7 +153,7 @@ pub fn plan_readings(
         readings: drive(&criterion, &sites, &candidates, &options.instrument, scale),
         now,
         limit,
-        cross_validated: state.cross_validated(),
+        cross_validated,
         parameters: parameters(&state.belief.mode),
         advice,
         used: state.readings.len(),
@@ -158,14 +168,14 @@ pub fn plan_readings(
 ///
 /// # Errors
 ///
-/// Several wavelengths.
+/// Several wavelengths, or more than 20,000 readings.
 pub fn choose_readings(
     scan: &Measurements,
     pilot: &[usize],
     count: usize,
     options: &PlanOptions,
 ) -> Result<Vec<usize>, PlanError> {
-    single_wavelength(scan)?;
+    check_scan(scan)?;
     let all: Vec<(usize, Reading)> = scan
         .readings()
         .iter()
@@ -257,7 +267,7 @@ impl PlanOptions {
         let Some(scan) = scan else {
             return Ok((State::new(prior, self.errors, Vec::new()), 0));
         };
-        single_wavelength(scan)?;
+        check_scan(scan)?;
         let readings: Vec<Reading> = scan.readings().iter().filter_map(Reading::new).collect();
         let left_out = scan.readings().len() - readings.len();
         Ok((State::new(prior, self.errors, readings), left_out))
@@ -308,7 +318,7 @@ impl PlanOptions {
 const MOST_READINGS: usize = 20_000;
 
 /// Checks that a scan is one that readings can be planned for.
-fn single_wavelength(scan: &Measurements) -> Result<(), PlanError> {
+fn check_scan(scan: &Measurements) -> Result<(), PlanError> {
     let count = scan.readings().len();
     if count > MOST_READINGS {
         let most = MOST_READINGS;

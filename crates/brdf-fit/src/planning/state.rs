@@ -48,20 +48,16 @@ pub(super) struct State {
     pub(super) error: ErrorModel,
     pub(super) readings: Vec<Reading>,
     pub(super) belief: Belief,
-    /// The most probable parameters of other families.
-    others: Vec<(Family, Logs)>,
 }
 
 impl State {
     pub(super) fn new(prior: Prior, error: ErrorModel, readings: Vec<Reading>) -> Self {
         let start = Belief::of_prior(&prior);
-        let others = OTHER_FAMILIES.map(|family| (family, similar(family, &prior.mean)));
         let mut state = Self {
             prior,
             error,
             readings,
             belief: start,
-            others: others.to_vec(),
         };
         state.learn();
         state
@@ -81,24 +77,20 @@ impl State {
         let error = self.error.variance().sqrt();
         let near = self.belief.mode;
         self.belief = Belief::new(&readings, Family::Paper, &self.prior, error, &near);
-        let mode = self.belief.mode;
-        self.others = OTHER_FAMILIES
-            .map(|family| (family, similar(family, &mode)))
-            .to_vec();
     }
 
-    /// The criterion with the readings so far chosen; the sites are the readings and then the candidates.
+    /// The sites of a criterion: the readings, and then the candidates.
     pub(super) fn field(&self, scene: &[Site], candidates: &[Site]) -> Field<'_> {
         let own = self.readings.iter().map(|reading| reading.site);
         let sites: Vec<Site> = own.chain(candidates.iter().copied()).collect();
-        Field::new(&self.error, scene, &sites, &self.belief, &self.others)
+        let others = OTHER_FAMILIES.map(|family| (family, similar(family, &self.belief.mode)));
+        Field::new(&self.error, scene, &sites, &self.belief, &others)
     }
 
     /// The criterion with the readings so far chosen.
     pub(super) fn criterion<'a>(&self, field: &'a Field<'a>) -> Criterion<'a> {
         let read = self.readings.len();
         let samples = self.belief.samples();
-        // Before the first reading the mode of the prior is no better than the other samples.
         let mut criterion = Criterion::new(field, &self.prior, &samples, read);
         for site in 0..read {
             criterion.choose(site);

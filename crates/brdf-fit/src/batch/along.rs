@@ -55,6 +55,17 @@ impl Bracket {
         }
     }
 
+    /// The bracket from point `i` to point `j`.
+    fn between(widths: &[f64], i: usize, j: usize) -> Self {
+        let [from, to] = [i, j].map(|i| widths[i].ln());
+        Self {
+            centre: (widths[i], from),
+            ends: [from.min(to), from.max(to)],
+            start: 0.5 * (from + to),
+            bend: 0.0,
+        }
+    }
+
     fn k1(&self, x: f64) -> f64 {
         if x == self.centre.1 {
             self.centre.0
@@ -103,9 +114,45 @@ impl<'a> Along<'a> {
         }
     }
 
+    /// k1 of the lowest point near point `i` of the grid, and E there, with E of each point.
+    ///
+    /// Two minima may lie so close to each other that the grid shows one. Then E falls away from the found one at
+    /// one of the widths around it.
+    pub(super) fn lowest_near(
+        &self,
+        widths: &[f64],
+        errors: &[f64],
+        i: usize,
+        columns: &mut LobeColumns,
+    ) -> (f64, f64) {
+        let found = self.lowest(&Bracket::new(widths, errors, i), columns);
+        let right = widths.partition_point(|k1| *k1 <= found.0);
+        let sides = [
+            (right.checked_sub(1), right.checked_sub(2), 1.0),
+            (Some(right), Some(right + 1), -1.0),
+        ];
+        let mut best = found;
+        for (from, to, outwards) in sides {
+            let (Some(from), Some(to)) = (from, to) else {
+                continue;
+            };
+            if from.max(to) >= widths.len() {
+                continue;
+            }
+            let there = self.at(widths[from], columns);
+            if there.has_lobe && there.slope * outwards > 0.0 {
+                let beyond = self.lowest(&Bracket::between(widths, from, to), columns);
+                if beyond.1 < best.1 {
+                    best = beyond;
+                }
+            }
+        }
+        best
+    }
+
     /// k1 of the lowest point of a bracket, and E there: secant steps on the slope, within what its sign
     /// leaves of the bracket.
-    pub(super) fn lowest(&self, bracket: &Bracket, columns: &mut LobeColumns) -> (f64, f64) {
+    fn lowest(&self, bracket: &Bracket, columns: &mut LobeColumns) -> (f64, f64) {
         let [mut low, mut high] = bracket.ends;
         let mut x = bracket.start;
         let mut best = (bracket.centre.0, f64::INFINITY);
@@ -164,7 +211,7 @@ impl<'a> Along<'a> {
         let ProfileSums { uu, ua, uy, aa, ay } = *sums;
         let (k2, kd, error) = solve_for(self.plan.model.fixed_weights(), sums);
         if k2 <= 0.0 {
-            let [of_mixed, of_measured] = if self.has_diffuse {
+            let [of_mixed, of_measured] = if self.has_diffuse && ay > 0.0 {
                 [ua / aa, ay / aa]
             } else {
                 [0.0, 0.0]

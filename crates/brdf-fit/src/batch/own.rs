@@ -4,10 +4,12 @@ use brdf_core::ModelParameters;
 use nalgebra::{DMatrix, DMatrixView};
 use pulp::{Simd, WithSimd};
 
-use super::along::{Along, Bracket};
+use super::along::Along;
 use super::plan::BatchPlan;
-use crate::model::{Grid, PLAIN, ReducedModel};
-use crate::objective::{LobeColumns, Objective, PROCESSOR, ProfileSums, dot_of, solve_for};
+use crate::model::{FAINT, Grid, PLAIN, ReducedModel, faint};
+use crate::objective::{
+    LobeColumns, Objective, PROCESSOR, ProfileSums, demand_for_lobe, dot_of, solve_for,
+};
 use crate::solver::descent::{Descent, Rows};
 
 /// The number of scans that are searched together.
@@ -32,9 +34,6 @@ const ROUNDING: f64 = 1e-14;
 /// Below this number of readings that were taken, descents replace the search along k1: few readings are
 /// nearly interpolated, and their E may have minima between the widths of the grid.
 const FEW_TAKEN: usize = 24;
-
-/// Where no width shows a lobe, those are followed whose scalar product with the readings is above this.
-const FAINT: f64 = -0.05;
 
 /// A lobe's column is parallel to the diffuse one where the square of its rest is less than this fraction.
 const COLLINEAR: f64 = 1e-14;
@@ -132,8 +131,8 @@ pub(super) struct OwnSearch<'a> {
     measured: DMatrix<f64>,
     /// E of each point of the grid.
     errors: Vec<f64>,
-    /// The scalar product of y and the unit column beside the diffuse one.
-    beside: Vec<f64>,
+    /// The demand for a lobe at each point.
+    demands: Vec<f64>,
 }
 
 impl<'a> OwnSearch<'a> {
@@ -141,10 +140,7 @@ impl<'a> OwnSearch<'a> {
         let table = plan.own();
         // Where the columns of the plan are no polynomials between two widths, E may have minima there that
         // no slope at the widths shows.
-        let is_smooth = plan
-            .table
-            .as_ref()
-            .is_some_and(|table| table.ends_in_minima);
+        let is_smooth = plan.table.as_ref().is_some_and(|table| table.is_smooth);
         let along_k1 = match plan.model.fixed_weights() {
             _ if !is_smooth => None,
             [None, None] => Some(true),
@@ -159,7 +155,7 @@ impl<'a> OwnSearch<'a> {
             products: DMatrix::zeros(0, 0),
             measured: DMatrix::zeros(0, 0),
             errors: vec![0.0; points],
-            beside: vec![0.0; points],
+            demands: vec![0.0; points],
         }
     }
 
@@ -204,16 +200,19 @@ impl<'a> OwnSearch<'a> {
             dot_of(&scan.diffuse, &scan.diffuse),
             dot_of(&scan.diffuse, &scan.y),
         );
+        let mut plain = f64::INFINITY;
         for (j, error) in self.errors.iter_mut().enumerate() {
             let (uu, ua) = (self.products[(j, i)], self.products[(points + j, i)]);
             let uy = self.measured[(j, i)];
-            *error = solve_for(fixed, &ProfileSums { uu, ua, uy, aa, ay }).2;
+            let sums = ProfileSums { uu, ua, uy, aa, ay };
+            self.demands[j] = demand_for_lobe(fixed[1], &sums);
+            let k2;
+            (k2, _, *error) = solve_for(fixed, &sums);
+            if k2 == 0.0 {
+                plain = *error;
+            }
         }
-        let descent = Descent {
-            objective: &self.plan.objective,
-            model: self.plan.model,
-        };
-        self.table.lowest(&descent, &self.errors, scan.rows())
+        self.lowest(plain, scan.rows())
     }
 
     /// The optimum along k1 alone.
@@ -234,7 +233,7 @@ impl<'a> OwnSearch<'a> {
             mixed,
             measured: &self.measured.as_slice()[points * i..points * (i + 1)],
             errors: &mut self.errors,
-            beside: &mut self.beside,
+            demands: &mut self.demands,
         });
         let [_, n, p] = self.table.grid.at(0);
         let along = Along::new(self.plan, scan, [n, p], has_diffuse);
@@ -242,8 +241,8 @@ impl<'a> OwnSearch<'a> {
             .followed(plain)
             .into_iter()
             .map(|point| {
-                let bracket = Bracket::new(&self.table.grid.axes[0], &self.errors, point);
-                along.lowest(&bracket, columns)
+                let widths = &self.table.grid.axes[0];
+                along.lowest_near(widths, &self.errors, point, columns)
             })
             .min_by(|a, b| a.1.total_cmp(&b.1));
         let k1 = best.map_or(self.table.grid.at(0)[0], |(k1, _)| k1);
@@ -266,32 +265,29 @@ impl<'a> OwnSearch<'a> {
         let mut points: Vec<usize> = (0..errors.len()).filter(is_minimum).collect();
         points.sort_by(|a, b| errors[*a].total_cmp(&errors[*b]));
         points.truncate(MOST_MINIMA);
-        if lowest >= plain {
-            // Where no width of the grid shows a lobe, one between them may, however faint it is.
-            let beside = &self.beside;
-            let beyond = |i: usize| beside.get(i).copied().unwrap_or(f64::NEG_INFINITY);
-            let is_faint = |&i: &usize| {
-                beside[i] > FAINT && beside[i] >= beyond(i.wrapping_sub(1)).max(beyond(i + 1))
-            };
-            points.extend((0..beside.len()).filter(is_faint).take(MOST_MINIMA));
-        }
+        points.extend(self.faint(plain - lowest));
         points
     }
-}
 
-impl OwnTable {
-    /// The lowest of the minima below those of the grid.
-    fn lowest(&self, descent: &Descent<'_>, errors: &[f64], rows: Rows<'_>) -> ModelParameters {
+    /// Points next to which a faint lobe may lie, where the grid has gained `gained` by lobes.
+    fn faint(&self, gained: f64) -> Vec<usize> {
+        let demand = |i: usize| self.demands[i];
+        let adjacent = |i: usize| self.table.grid.adjacent(i);
+        faint(demand, adjacent, self.demands.len(), gained, FAINT)
+    }
+
+    /// The lowest of the minima below those of the grid, E without a lobe being `plain`.
+    fn lowest(&self, plain: f64, rows: Rows<'_>) -> ModelParameters {
+        let (grid, errors) = (&self.table.grid, &self.errors);
         let lowest = errors.iter().copied().fold(f64::INFINITY, f64::min);
-        let worse = if self.grid.is_along_k1() {
+        let worse = if grid.is_along_k1() {
             WORSE_ALONG_K1
         } else {
             WORSE
         };
         let is_minimum = |&i: &usize| {
             errors[i] <= lowest + worse
-                && self
-                    .grid
+                && grid
                     .adjacent(i)
                     .all(|j| errors[i] < errors[j] || (errors[i] == errors[j] && i < j))
         };
@@ -300,21 +296,24 @@ impl OwnTable {
         minima.truncate(MOST_MINIMA);
         for i in 0..minima.len() {
             let is_plain = |j: usize| errors[j] <= errors[minima[i]] * (1.0 + PLAIN);
-            let widest = self.grid.widest_of_plain(minima[i], is_plain);
+            let widest = grid.widest_of_plain(minima[i], is_plain);
             if !minima.contains(&widest) {
                 minima.push(widest);
             }
         }
-        let descents = minima
-            .into_iter()
-            .map(|i| descent.from(with_lobe(self.grid.at(i)), rows));
-        let best = descents.min_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or(with_lobe(self.grid.at(0)), |(at, _)| at)
+        minima.extend(self.faint(plain - lowest));
+        let descent = Descent {
+            objective: &self.plan.objective,
+            model: self.plan.model,
+        };
+        let starts = minima.into_iter().map(|i| with_lobe(grid.at(i)));
+        descent
+            .lowest(starts, rows)
+            .map_or(with_lobe(grid.at(0)), |(at, _)| at)
     }
 }
 
-/// E of each point of the grid with the best weights, and the scalar product of y and the unit column
-/// beside the diffuse one; E without a lobe.
+/// E of each point of the grid with the best weights, and the demand for a lobe there; E without a lobe.
 struct OfGrid<'a> {
     scan: &'a OwnScan,
     has_diffuse: bool,
@@ -322,7 +321,7 @@ struct OfGrid<'a> {
     mixed: &'a [f64],
     measured: &'a [f64],
     errors: &'a mut [f64],
-    beside: &'a mut [f64],
+    demands: &'a mut [f64],
 }
 
 impl WithSimd for OfGrid<'_> {
@@ -345,8 +344,8 @@ impl WithSimd for OfGrid<'_> {
         let positive = |x: f64| if x > 0.0 { x } else { 0.0 };
         let plain = positive(ay) * of_diffuse;
         let rows = self.squares.iter().zip(self.mixed).zip(self.measured);
-        let to = self.errors.iter_mut().zip(self.beside);
-        for ((error, beside), ((uu, ua), uy)) in to.zip(rows) {
+        let to = self.errors.iter_mut().zip(self.demands);
+        for ((error, demand), ((uu, ua), uy)) in to.zip(rows) {
             let ua = if self.has_diffuse { *ua } else { 0.0 };
             let rest = uu - ua * ua * per_square;
             let along = uy - ua * of_diffuse;
@@ -361,7 +360,11 @@ impl WithSimd for OfGrid<'_> {
             let with_lobe = if without_diffuse { alone } else { both };
             let has_lobe = if is_apart { along > 0.0 } else { alone > plain };
             *error = 1.0 - if has_lobe { with_lobe } else { plain };
-            *beside = along / safe.sqrt();
+            *demand = if ay > 0.0 {
+                along / safe.sqrt()
+            } else {
+                *uy / if *uu > 0.0 { uu.sqrt() } else { 1.0 }
+            };
         }
         1.0 - plain
     }

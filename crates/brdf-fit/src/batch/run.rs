@@ -13,6 +13,7 @@ use super::plan::{BatchError, BatchPlan};
 use super::result::{BatchFit, Row, Status};
 use super::scans::Scans;
 use super::search::{BLOCK, Found, Search};
+use super::table::Table;
 use crate::model::{K1_RANGE, Parameter};
 use crate::objective::{LobeColumns, PROCESSOR, SIZES, dot_of};
 use crate::solver::descent::{Descent, Rows};
@@ -325,22 +326,20 @@ impl<'a, T: Copy + Into<f64> + Sync> Chunk<'a, T> {
         };
         let (_, diffuse) = plan.objective.fixed_columns();
         let by_k1 = self.run.errors && plan.is_along_k1();
-        let mut best: Option<Weighed> = None;
-        for found in &self.found {
+        let parameters = |found: &Found| {
             let [k1, n, p] = found.at;
-            let start = ModelParameters {
-                k2: 0.0,
-                kd: 0.0,
-                k1,
-                n,
-                p,
-            };
-            let ends_in_minima = plan.table.as_ref().is_none_or(|table| table.ends_in_minima);
-            let at = if ends_in_minima {
-                start
-            } else {
-                descent.from(start, rows).0
-            };
+            let (k2, kd) = (0.0, 0.0);
+            ModelParameters { k2, kd, k1, n, p }
+        };
+        let is_minimum = |found: &&Found| {
+            let accurate = |table: &Table| table.is_accurate_at(found.point);
+            plan.table.as_ref().is_none_or(accurate)
+        };
+        let starts = self.found.iter().filter(|found| !is_minimum(found));
+        let descended = descent.lowest(starts.map(parameters), rows);
+        let minima = self.found.iter().filter(is_minimum).map(parameters);
+        let mut best: Option<Weighed> = None;
+        for at in minima.chain(descended.map(|(at, _)| at)) {
             let here = best_weights(plan, at, rows, diffuse, by_k1, &mut self.columns);
             if best.is_none_or(|best| here.error < best.error) {
                 best = Some(here);

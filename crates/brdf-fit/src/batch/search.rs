@@ -10,7 +10,7 @@ use pulp::{Simd, WithSimd};
 
 use super::cell::{Cell, Line};
 use super::table::{Angle, Table};
-use crate::model::PLAIN;
+use crate::model::{FAINT, PLAIN, faint};
 use crate::objective::PROCESSOR;
 
 /// The number of scans that are searched together.
@@ -21,6 +21,9 @@ const MOST_MAXIMA: usize = 16;
 
 /// The largest number of maxima from which descents start.
 const MOST_STARTS: usize = 8;
+
+/// The same for few readings.
+const MOST_STARTS_OF_FEW: usize = 32;
 
 /// Where the explained squares differ by less than this fraction, they are equal: the maxima of a plain
 /// are its rounding.
@@ -55,7 +58,7 @@ pub(super) struct Search<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Found {
     /// The index of the point of the grid.
-    point: usize,
+    pub(super) point: usize,
     /// k1, n and p.
     pub(super) at: [f64; 3],
     pub(super) explained: f64,
@@ -122,10 +125,10 @@ impl<'a> Search<'a> {
             *explained = angle.explained(diffuse, *beside);
         }
         if table.cells.is_empty() {
-            self.starts(squares, to);
+            self.starts(diffuse, beside, squares, to);
             return;
         }
-        self.follow(diffuse, beside, coordinates, to);
+        self.follow(diffuse, beside, coordinates, squares, to);
         let best = to.iter().map(|found| found.explained).fold(0.0, f64::max);
         let alike = |found: &Found| (ALIKE + 4.0 * table.cells[found.point].error) * squares;
         to.retain(|found| found.explained >= best - alike(found));
@@ -133,7 +136,14 @@ impl<'a> Search<'a> {
 
     /// Follows the maxima of the grid along ln k1 that may lead to the largest one.
     #[inline(always)]
-    fn follow(&self, diffuse: f64, beside: &[f64], coordinates: &[f64], to: &mut Vec<Found>) {
+    fn follow(
+        &self,
+        diffuse: f64,
+        beside: &[f64],
+        coordinates: &[f64],
+        squares: f64,
+        to: &mut Vec<Found>,
+    ) {
         let (table, explained) = (self.table, &self.explained);
         let largest = largest(explained);
         let gain = 0.25 * table.curvature * super::basis::norm(coordinates);
@@ -151,30 +161,9 @@ impl<'a> Search<'a> {
                 && (value == largest || left < lower && right < lower)
         };
         let maxima = explained.iter().enumerate().filter(is_maximum);
-        to.extend(maxima.map(|(i, &explained)| Found {
-            point: i,
-            at: table.grid.at(i),
-            explained,
-        }));
-        // Where no width of the grid shows a lobe, one between them may, however faint it is.
-        let plain = diffuse.max(0.0).powi(2);
-        if largest <= plain {
-            let is_faint = |&i: &usize| {
-                let beyond = |i: usize| beside.get(i).copied().unwrap_or(f64::NEG_INFINITY);
-                let highest = beyond(i.wrapping_sub(1)).max(beyond(i + 1));
-                beside[i] > -gain && beside[i] >= highest
-            };
-            let known = to.len();
-            for i in (0..beside.len()).filter(is_faint) {
-                if to[..known].iter().all(|found| found.point != i) {
-                    to.push(Found {
-                        point: i,
-                        at: table.grid.at(i),
-                        explained: plain,
-                    });
-                }
-            }
-        }
+        to.extend(maxima.map(|(i, _)| self.found(i)));
+        self.add_ends_of_plains(squares, to);
+        self.add_faint(diffuse, beside, gain, to);
         if to.len() > MOST_MAXIMA {
             to.sort_by(|a, b| b.explained.total_cmp(&a.explained));
             to.truncate(MOST_MAXIMA);
@@ -189,10 +178,16 @@ impl<'a> Search<'a> {
 
     /// The highest maxima of the grid over several parameters.
     #[inline(always)]
-    fn starts(&self, squares: f64, to: &mut Vec<Found>) {
+    fn starts(&self, diffuse: f64, beside: &[f64], squares: f64, to: &mut Vec<Found>) {
         let (table, explained) = (self.table, &self.explained);
-        let rest = (squares - largest(explained)).max(0.0);
-        let least = squares - WORSE * rest - MUCH * squares;
+        let largest = largest(explained);
+        let rest = (squares - largest).max(0.0);
+        // Few readings are nearly interpolated: a start that seems worse may lead to the optimum.
+        let (least, most) = if table.has_few_readings {
+            (0.0, MOST_STARTS_OF_FEW)
+        } else {
+            (squares - WORSE * rest - MUCH * squares, MOST_STARTS)
+        };
         let [_, n, _] = table.grid.counts();
         let maximum = |&(i, &value): &(usize, &f64)| {
             // The neighbours along k1 decide most cases at once.
@@ -204,27 +199,71 @@ impl<'a> Search<'a> {
                     .all(|j| value > explained[j] || (value == explained[j] && i < j))
         };
         let maxima = explained.iter().enumerate().filter(maximum);
-        to.extend(maxima.map(|(i, &explained)| Found {
-            point: i,
-            at: table.grid.at(i),
-            explained,
-        }));
+        to.extend(maxima.map(|(i, _)| self.between_widths(i)));
         to.sort_by(|a, b| b.explained.total_cmp(&a.explained));
-        to.truncate(MOST_STARTS);
+        to.truncate(most);
+        self.add_ends_of_plains(squares, to);
+        self.add_faint(diffuse, beside, FAINT * squares.sqrt(), to);
+    }
+
+    /// A point of the grid.
+    #[inline(always)]
+    fn found(&self, point: usize) -> Found {
+        Found {
+            point,
+            at: self.table.grid.at(point),
+            explained: self.explained[point],
+        }
+    }
+
+    /// A maximum of the grid, moved to the highest point of the parabola through it and its neighbours along
+    /// ln k1.
+    #[inline(always)]
+    fn between_widths(&self, point: usize) -> Found {
+        let mut found = self.found(point);
+        let stride = self.table.grid.counts()[1];
+        let neighbours = point.checked_sub(stride).zip(Some(point + stride));
+        let Some((narrower, wider)) = neighbours.filter(|(_, wider)| *wider < self.explained.len())
+        else {
+            return found;
+        };
+        let [below, above] = [narrower, wider].map(|i| self.explained[i]);
+        let bend = below - 2.0 * found.explained + above;
+        let other = self.table.grid.at(wider)[0];
+        if bend < 0.0 && other > found.at[0] {
+            let steps = (0.5 * (below - above) / bend).clamp(-0.5, 0.5);
+            found.at[0] *= (other / found.at[0]).powf(steps);
+        }
+        found
+    }
+
+    /// Adds the wide ends of the plains on which the points are.
+    #[inline(always)]
+    fn add_ends_of_plains(&self, squares: f64, to: &mut Vec<Found>) {
         for i in 0..to.len() {
-            let Found {
-                point,
-                explained: here,
-                ..
-            } = to[i];
-            let is_plain = |j: usize| explained[j] >= here - PLAIN * (squares - here);
-            let widest = table.grid.widest_of_plain(point, is_plain);
+            let (point, here) = (to[i].point, to[i].explained);
+            let is_plain = |j: usize| self.explained[j] >= here - PLAIN * (squares - here);
+            let widest = self.table.grid.widest_of_plain(point, is_plain);
             if to.iter().all(|found| found.point != widest) {
-                to.push(Found {
-                    point: widest,
-                    at: table.grid.at(widest),
-                    explained: explained[widest],
-                });
+                to.push(self.found(widest));
+            }
+        }
+    }
+
+    /// Adds the points next to which a faint lobe may lie, where the widths of the grid show none, or hardly
+    /// one; `curvature` is the most by which the demand for a lobe rises between them.
+    #[inline(always)]
+    fn add_faint(&self, diffuse: f64, beside: &[f64], curvature: f64, to: &mut Vec<Found>) {
+        let table = self.table;
+        let gained = largest(&self.explained) - diffuse.max(0.0).powi(2);
+        if gained >= curvature * curvature {
+            return;
+        }
+        let demand = |i: usize| table.angles[i].demand(diffuse, beside[i]);
+        let adjacent = |i: usize| table.grid.adjacent(i);
+        for i in faint(demand, adjacent, beside.len(), gained, curvature) {
+            if to.iter().all(|found| found.point != i) {
+                to.push(self.found(i));
             }
         }
     }
@@ -266,28 +305,28 @@ fn largest(values: &[f64]) -> f64 {
 #[inline(always)]
 fn along(line: &Line, diffuse: f64, t: f64) -> [f64; 3] {
     let [beside, beside1, beside2] = line.beside.at(t);
-    if beside <= 0.0 {
+    let has_diffuse = diffuse > 0.0;
+    if has_diffuse && beside <= 0.0 {
         // Without a lobe nothing changes: the way to one is upwards in the scalar product.
-        return [diffuse.max(0.0).powi(2), beside1, beside2];
+        return [diffuse * diffuse, beside1, beside2];
     }
     let [cos, cos1, cos2] = line.cos.at(t);
     let [sin, sin1, sin2] = line.sin.at(t);
     let angle = Angle { cos, sin };
-    let explained = angle.explained(diffuse, beside);
-    if diffuse * sin >= beside * cos {
+    if has_diffuse && diffuse * sin >= beside * cos {
         return [
-            explained,
+            angle.explained(diffuse, beside),
             beside * beside1,
             beside1 * beside1 + beside * beside2,
         ];
     }
     let lobe = diffuse * cos + beside * sin;
-    if lobe <= 0.0 {
-        return [0.0, 0.0, 0.0];
-    }
     let slope = diffuse * cos1 + beside1 * sin + beside * sin1;
     let bend = diffuse * cos2 + beside2 * sin + 2.0 * beside1 * sin1 + beside * sin2;
-    [explained, lobe * slope, slope * slope + lobe * bend]
+    if lobe <= 0.0 {
+        return [0.0, slope, bend];
+    }
+    [lobe * lobe, lobe * slope, slope * slope + lobe * bend]
 }
 
 /// The highest point of a cell whose centre is a maximum of the grid: Newton's method on the slope,

@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::basis::{Basis, norm, remove};
 use super::cell::Cell;
-use crate::model::{Grid, Parameter, ReducedModel};
+use crate::model::{FEW_READINGS, Grid, Parameter, ReducedModel};
 use crate::objective::{Objective, dot_of as dot};
 
 /// What the basis leaves of a column where the search ends in it: rounding in E.
@@ -19,8 +19,11 @@ const COARSE: f64 = 1e-4;
 /// them.
 const FEW_ROWS: usize = 32;
 
-/// The error of a cell up to which its maxima are those of the columns.
-const INTERPOLATED: f64 = 1e-9;
+/// The error of a cell up to which its maxima are those of the columns, and its k1 that of the minimum of E.
+const INTERPOLATED: f64 = 3e-12;
+
+/// The error of all cells up to which the columns have no features between the widths of the grid.
+const SMOOTH: f64 = 1e-9;
 
 /// Columns that represent those between the widths of the grid, for each step.
 const SAMPLES: usize = 4;
@@ -65,6 +68,15 @@ impl Angle {
             without_lobe * without_lobe
         }
     }
+
+    /// The [demand for a lobe](crate::objective::demand_for_lobe).
+    pub(super) fn demand(self, diffuse: f64, beside: f64) -> f64 {
+        if diffuse > 0.0 {
+            beside
+        } else {
+            diffuse * self.cos + beside * self.sin
+        }
+    }
 }
 
 /// The tables of a plan.
@@ -81,9 +93,9 @@ pub(super) struct Table {
     pub(super) directions: DMatrix<f64>,
     /// The columns around each point, where k1 alone is searched.
     pub(super) cells: Vec<Cell>,
-    /// Whether the optima of the search are those of E within rounding: not where several parameters are
-    /// searched, nor where the cells are not accurate.
-    pub(super) ends_in_minima: bool,
+    /// Whether the columns have no features between the widths: not where several parameters are searched.
+    pub(super) is_smooth: bool,
+    pub(super) has_few_readings: bool,
     /// The largest second derivative of v and of the unit column of the lobe along ln k1, in steps.
     pub(super) curvature: f64,
 }
@@ -210,11 +222,19 @@ impl Table {
             has_diffuse,
             angles,
             directions,
-            ends_in_minima: along_k1 && error < INTERPOLATED,
+            has_few_readings: objective.count() < FEW_READINGS,
+            is_smooth: along_k1 && error < SMOOTH,
             curvature: cells.iter().map(Cell::curvature).fold(0.0, f64::max),
             cells,
             grid,
         })
+    }
+
+    /// Whether an optimum that the search finds next to a point is one of E within rounding.
+    pub(super) fn is_accurate_at(&self, point: usize) -> bool {
+        self.cells
+            .get(point)
+            .is_some_and(|cell| cell.error < INTERPOLATED)
     }
 
     /// The number of columns of the basis.

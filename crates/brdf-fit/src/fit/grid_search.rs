@@ -11,8 +11,8 @@ use std::borrow::Cow;
 use brdf_core::ModelParameters;
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Grid, PLAIN, Parameter, ReducedModel};
-use crate::objective::{Objective, ProfileSums, solve_for};
+use crate::model::{FAINT, FEW_READINGS, Grid, PLAIN, Parameter, ReducedModel, faint};
+use crate::objective::{Objective, ProfileSums, demand_for_lobe, solve_for};
 use crate::progress::{Cancelled, Progress};
 
 /// A search over n or p uses about this number of readings at most. The minima are refined with all
@@ -24,6 +24,9 @@ const SAME: f64 = 1e-14;
 
 /// The largest number of minima of the grid that are refined.
 const MOST_MINIMA: usize = 8;
+
+/// The same for few readings, which E determines little.
+const MOST_MINIMA_OF_FEW: usize = 32;
 
 /// A point of the profile: the best weights at the other parameters, and E with them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -60,6 +63,7 @@ pub(crate) struct GridSearch {
     fixed: Vec<[f64; 3]>,
     /// Whether E of the profile is that of the objective, not of a part of its rows.
     pub(crate) is_of_all_rows: bool,
+    is_of_few_readings: bool,
 }
 
 /// The profile over some choice of the folds.
@@ -68,6 +72,8 @@ pub(crate) struct Profile<'a> {
     search: &'a GridSearch,
     /// k2, kD and E, in the order of the grid.
     points: Vec<(f64, f64, f64)>,
+    /// The demand for a lobe at each point.
+    demands: Vec<f64>,
 }
 
 impl GridSearch {
@@ -157,6 +163,7 @@ impl GridSearch {
             lobe,
             fixed,
             is_of_all_rows: true,
+            is_of_few_readings: objective.count() < FEW_READINGS,
         })
     }
 
@@ -175,11 +182,15 @@ impl GridSearch {
             let [uu, ua, uy] = sum(products);
             // E is normalised by the readings of the chosen folds.
             let [uu, ua, uy, aa, ay] = [uu, ua, uy, aa, ay].map(|product| product / yy);
-            solve_for(self.weights, &ProfileSums { uu, ua, uy, aa, ay })
+            let sums = ProfileSums { uu, ua, uy, aa, ay };
+            let demand = demand_for_lobe(self.weights[1], &sums);
+            (solve_for(self.weights, &sums), demand)
         });
+        let (points, demands) = points.unzip();
         Profile {
             search: self,
-            points: points.collect(),
+            points,
+            demands,
         }
     }
 
@@ -211,8 +222,8 @@ impl Profile<'_> {
         points
     }
 
-    /// Where descents start: the lowest local minima of the grid, in ascending order of E, and then the
-    /// wide ends of their plains.
+    /// Where descents start: the lowest local minima of the grid, in ascending order of E, then the wide
+    /// ends of their plains, and the points next to which a faint lobe may lie.
     pub(crate) fn starts(&self) -> Vec<ProfilePoint> {
         let error = |i: usize| self.points[i].2;
         let grid = &self.search.grid;
@@ -221,8 +232,21 @@ impl Profile<'_> {
             let end = grid.widest_of_plain(i, |j| error(j) <= error(i) * (1.0 + PLAIN));
             (end != i).then_some(end)
         });
-        let all = minima.iter().copied().chain(ends);
+        let all = minima.iter().copied().chain(ends).chain(self.faint());
         all.map(|i| self.point(i)).collect()
+    }
+
+    /// The points next to which a faint lobe may lie.
+    fn faint(&self) -> Vec<usize> {
+        let without_lobe = self.points.iter().find(|(k2, ..)| *k2 == 0.0);
+        let Some((_, _, plain)) = without_lobe.filter(|_| self.search.weights[0].is_none()) else {
+            return Vec::new();
+        };
+        let grid = &self.search.grid;
+        let adjacent = |i: usize| grid.adjacent(i);
+        let gained = plain - self.lowest().error;
+        let demand = |i: usize| self.demands[i];
+        faint(demand, adjacent, self.points.len(), gained, FAINT)
     }
 
     /// The lowest local minima of the grid, in ascending order of E.
@@ -241,7 +265,12 @@ impl Profile<'_> {
         };
         let mut is_first_of_plain = true;
         minima.retain(|&i| !is_on_plain(i) || std::mem::take(&mut is_first_of_plain));
-        minima.truncate(MOST_MINIMA);
+        let most = if self.search.is_of_few_readings {
+            MOST_MINIMA_OF_FEW
+        } else {
+            MOST_MINIMA
+        };
+        minima.truncate(most);
         minima
     }
 

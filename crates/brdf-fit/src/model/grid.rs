@@ -9,7 +9,7 @@ const STEPS: u32 = 83;
 
 /// Below this number of readings, the steps in ln k1 are a quarter as long: few readings are nearly
 /// interpolated, and the small rest of E has narrower features than the columns.
-const FEW_READINGS: usize = 24;
+pub(crate) const FEW_READINGS: usize = 24;
 
 /// The refractive indices of the grid, denser at small values, where R0 changes most.
 const INDICES: [f64; 14] = [
@@ -98,6 +98,37 @@ impl Grid {
     }
 }
 
+/// Points without a lobe next to which a faint one may explain more of the readings' squares than the best
+/// point of the grid, which explains `gained` beyond the best diffuse part; the most promising ones first.
+///
+/// There E is plain, and what the readings ask for, their [demand for a lobe](crate::objective::demand_for_lobe)
+/// at each point, leads to one. `curvature` is the most by which the demand rises between two points.
+pub(crate) fn faint<A: Iterator<Item = usize>>(
+    demand: impl Fn(usize) -> f64,
+    adjacent: impl Fn(usize) -> A,
+    points: usize,
+    gained: f64,
+    curvature: f64,
+) -> Vec<usize> {
+    let least = gained.max(0.0).sqrt() - curvature;
+    let is_faint = |&i: &usize| {
+        let here = demand(i);
+        let is_first_of_plain = |j: usize| demand(j) < here || demand(j) == here && i < j;
+        least < here && here <= 0.0 && adjacent(i).all(is_first_of_plain)
+    };
+    let mut found: Vec<usize> = (0..points).filter(is_faint).collect();
+    found.sort_by(|a, b| demand(*b).total_cmp(&demand(*a)));
+    found.truncate(MOST_FAINT);
+    found
+}
+
+/// The largest number of points next to which a faint lobe is looked for.
+const MOST_FAINT: usize = 8;
+
+/// Between two points of the grid, the demand for a lobe rises by less than this fraction of the length of the
+/// readings.
+pub(crate) const FAINT: f64 = 0.15;
+
 /// The widths of the grid, from the lower to the upper end of their range.
 fn widths(readings: usize) -> Vec<f64> {
     let steps = if readings < FEW_READINGS {
@@ -116,3 +147,22 @@ fn widths(readings: usize) -> Vec<f64> {
 
 /// On a plain, E differs from its lowest value by less than this fraction.
 pub(crate) const PLAIN: f64 = 1e-3;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faint_lobes_are_looked_for_next_to_the_highest_demands_that_could_be_enough() {
+        let demands = [-0.3, -0.02, -0.1, -0.1, -0.01, -0.2, 0.0, 0.0, 0.0];
+        let adjacent = |i: usize| {
+            let left = i.checked_sub(1).into_iter();
+            left.chain((i + 1 < demands.len()).then_some(i + 1))
+        };
+        let of = |gained: f64| faint(|i| demands[i], adjacent, demands.len(), gained, 0.1);
+        // A plain counts once, and what the grid has gained already needs more demand.
+        assert_eq!(of(0.0), [6, 4, 1]);
+        assert_eq!(of(0.085 * 0.085), [6, 4]);
+        assert_eq!(of(0.1 * 0.1), Vec::<usize>::new());
+    }
+}

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::format::ParseError;
 
 pub use fixed::{FixedError, FixedParameters, ReducedModel};
-pub(crate) use grid::{Grid, PLAIN};
+pub(crate) use grid::{FAINT, FEW_READINGS, Grid, PLAIN, faint};
 
 /// The range of k1 in a fit. The lower end is far below the resolution of any goniometer; at the
 /// upper end the facet distribution has reached its limit sec alpha.

@@ -14,7 +14,7 @@ mod rows;
 mod subset;
 pub(crate) mod weights;
 
-pub(crate) use best_weights::{solve, solve_for};
+pub(crate) use best_weights::{demand_for_lobe, solve, solve_for};
 pub(crate) use block::{BLOCK, Block, LobeColumns, PROCESSOR, TakeBlock, WithLobe, dot, dot_of};
 pub use error::ObjectiveError;
 pub use evaluation::{NormalEquations, PARALLEL_FROM};

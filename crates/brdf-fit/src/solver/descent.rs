@@ -5,7 +5,7 @@ use std::ops::Range;
 use brdf_core::ModelParameters;
 use nalgebra::{SMatrix, SVector};
 
-use crate::model::{Parameter, ReducedModel};
+use crate::model::{FEW_READINGS, Parameter, ReducedModel};
 use crate::objective::{BLOCK, Block, Objective, ProfileSums, TakeBlock, dot, solve_for};
 
 /// The nonlinear parameters: k1, n and p.
@@ -26,11 +26,8 @@ const ROUNDING: f64 = 1e-17;
 /// Where a step has gained its prediction within this fraction, so will the next one.
 const AS_PREDICTED: f64 = 0.3;
 
-/// Within this factor of an end of the range of k1, a descent starts there as well.
-const NEAR_END_OF_K1: f64 = 100.0;
-
-/// From this refractive index on, a descent starts at the upper end of its range as well.
-const NEAR_END_OF_N: f64 = 3.0;
+/// The longest step of ln k1 or ln p: two steps of the grid, so that a descent does not leave its valley.
+const LONGEST: f64 = 0.5;
 
 /// The difference of ln k1, n or ln p for second derivatives.
 const DIFFERENCE: f64 = 1e-5;
@@ -134,16 +131,21 @@ pub(crate) struct Descent<'a> {
 }
 
 /// A step of a descent: the parameters with the best weights, E there, and the products.
-struct Local {
-    at: ModelParameters,
-    error: f64,
-    products: Products,
+pub(super) struct Local {
+    pub(super) at: ModelParameters,
+    pub(super) error: f64,
+    pub(super) products: Products,
     /// Whether k2 and kD adapt: free, and not at zero.
     adapt: [bool; 2],
 }
 
 impl Descent<'_> {
-    fn local(&self, at: ModelParameters, derivatives: [bool; 3], rows: Rows<'_>) -> Local {
+    pub(super) fn local(
+        &self,
+        at: ModelParameters,
+        derivatives: [bool; 3],
+        rows: Rows<'_>,
+    ) -> Local {
         let products = Products::at(self.objective, &at, derivatives, rows);
         let fixed = self.model.fixed_weights();
         let (k2, kd, error) = solve_for(fixed, &products.sums());
@@ -163,22 +165,35 @@ impl Descent<'_> {
     /// Damped Gauss-Newton steps on ln k1, n and ln p. Where they do not gain what they predict, because
     /// the residuals are large or the valley is flat, steps with differences of slopes are tried as well.
     pub(crate) fn from(&self, start: ModelParameters, rows: Rows<'_>) -> (ModelParameters, f64) {
-        let here = self.descend(start, rows);
-        let ends = self.near_ends(&here.at).map(|end| self.descend(end, rows));
-        let lowest = ends.fold(None, |lowest: Option<Local>, end| match lowest {
-            Some(lowest) if lowest.error <= end.error => Some(lowest),
-            _ => Some(end),
-        });
-        let lowest = lowest.filter(|end| end.error < here.error).unwrap_or(here);
-        (lowest.at, lowest.error)
+        self.with_other_valleys(self.descend(start, rows), rows)
     }
 
-    fn descend(&self, start: ModelParameters, rows: Rows<'_>) -> Local {
+    /// The lowest of the minima below some starts and E there. Where few readings are nearly interpolated, each
+    /// start may lead to another valley, and else the lowest.
+    pub(crate) fn lowest(
+        &self,
+        starts: impl Iterator<Item = ModelParameters>,
+        rows: Rows<'_>,
+    ) -> Option<(ModelParameters, f64)> {
+        if self.has_few_readings() {
+            let minima = starts.map(|start| self.from(start, rows));
+            return minima.min_by(|a, b| a.1.total_cmp(&b.1));
+        }
+        let minima = starts.map(|start| self.descend(start, rows));
+        let lowest = minima.min_by(|a, b| a.error.total_cmp(&b.error))?;
+        Some(self.with_other_valleys(lowest, rows))
+    }
+
+    pub(super) fn has_few_readings(&self) -> bool {
+        self.objective.count() < FEW_READINGS
+    }
+
+    pub(super) fn descend(&self, start: ModelParameters, rows: Rows<'_>) -> Local {
         let free = NONLINEAR.map(|parameter| self.model.frees(parameter));
-        let mut here = self.local(start, free, rows);
+        let mut here = self.with_lobe_near(self.local(start, free, rows), free, rows);
         let mut damping = 1e-4;
         let mut is_predicted = false;
-        let mut newton = false;
+        let mut newton = self.has_few_readings();
         for i in 0..MOST_STEPS {
             newton |= i >= GAUSS_NEWTON_STEPS;
             let least = GAIN * here.error.max(0.0) + ROUNDING;
@@ -212,25 +227,6 @@ impl Descent<'_> {
             damping = (damping * 0.2).max(1e-12);
         }
         here
-    }
-
-    /// The ends of the ranges that are near: towards those of k1, E falls ever more slowly; before that of
-    /// n, the steps of the grid are long.
-    fn near_ends(&self, at: &ModelParameters) -> impl Iterator<Item = ModelParameters> {
-        let ends = NONLINEAR.map(|parameter| {
-            let (lowest, highest) = parameter.range();
-            let value = parameter.of(at);
-            let end = match parameter {
-                Parameter::K1 if value < NEAR_END_OF_K1 * lowest => lowest,
-                Parameter::K1 if value > highest / NEAR_END_OF_K1 => highest,
-                Parameter::N if value > NEAR_END_OF_N => highest,
-                _ => return None,
-            };
-            let mut to = *at;
-            parameter.set(&mut to, end);
-            (self.model.frees(parameter) && value != end).then_some(to)
-        });
-        ends.into_iter().flatten()
     }
 
     /// The second derivatives of E/2 along ln k1, n and ln p, from differences of the slopes.
@@ -342,7 +338,7 @@ fn shifted(at: &ModelParameters, free: [bool; 3], step: &SVector<f64, 3>) -> Mod
         let value = parameter.of(at);
         let moved = match parameter {
             Parameter::N => value + step[i],
-            _ => value * step[i].clamp(-3.0, 3.0).exp(),
+            _ => value * step[i].clamp(-LONGEST, LONGEST).exp(),
         };
         parameter.set(&mut to, moved.clamp(lowest, highest));
     }

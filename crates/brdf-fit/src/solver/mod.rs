@@ -5,6 +5,7 @@ mod error;
 pub(crate) mod levenberg_marquardt;
 pub(crate) mod nelder_mead;
 pub(crate) mod observed;
+mod valleys;
 
 pub use error::SolverError;
 pub(crate) use error::unless_cancelled;

@@ -11,7 +11,7 @@ mod table;
 
 pub use scans::{Sample, measured, simulated};
 pub use strategies::{Choices, Strategy};
-pub use table::{Needed, curves_csv, predictions, ratios, table};
+pub use table::{Needed, curves_csv, predictions, ratios, rises, table};
 
 use brdf_core::AnyBrdf;
 use brdf_fit::planning::{PlanOptions, Setting, predict};

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! prior, setting, errors -> belief -> criterion -> state -> advice --+
-//! instrument, scene_points ------------------------------------------+-> planner -> review
+//!                        instrument -> choice -----------------------+-> planner -> review
+//!                        scene_points -------------------------------+
 //! ```
 //!
 //! A plan chooses the readings whose fit has the smallest mean square error of ln f_r over the directions of a scene
@@ -16,6 +17,7 @@
 
 mod advice;
 mod belief;
+mod choice;
 mod criterion;
 mod error;
 mod errors;

@@ -4,6 +4,7 @@ use brdf_core::ModelParameters;
 use brdf_core::scene::{Azimuth, Domain};
 
 use super::advice::{Advice, WORTHWHILE};
+use super::choice::{Choice, Chooser};
 use super::criterion::Criterion;
 use super::error::PlanError;
 use super::errors::ErrorModel;
@@ -121,12 +122,7 @@ pub fn plan_readings(
     let criterion = state.criterion(&field);
     let scale = state.scale(&field);
     let now = prediction(&criterion, scale);
-    let chosen = choose(
-        &criterion,
-        &candidates,
-        options.most.max(2),
-        &options.instrument,
-    );
+    let chosen = choose(&state, &criterion, &candidates, options);
     let predicted = chosen.errors.iter().map(|error| scale * error);
     let all = scale * with_all(&criterion, state.readings.len(), candidates.len());
     let limit = predicted.fold(all.min(now.error), f64::min);
@@ -162,7 +158,8 @@ pub fn plan_readings(
 }
 
 /// Chooses readings of a scan one after the other as [`plan_readings`] does, the value of each being known
-/// before the next is chosen: the indices of `count` readings, the first of which are those of `pilot`.
+/// before the next is chosen: the indices of `count` readings, the first of which are those of `pilot`. Times
+/// count as they do there: an incidence that was chosen before is no change of it.
 ///
 /// The scene is the scan itself: each of its readings counts alike.
 ///
@@ -189,13 +186,19 @@ pub fn choose_readings(
     first.sort_by_key(|(i, _)| pilot.iter().position(|p| p == i));
     let (mut chosen, readings): (Vec<usize>, Vec<Reading>) = first.into_iter().unzip();
     let mut state = State::new(Prior::of(options.material), options.errors, readings);
-    while chosen.len() < count && !rest.is_empty() {
+    let mut chooser = Chooser::new(&options.instrument, &state.settings(), &sites);
+    while chosen.len() < count {
         let candidates: Vec<Site> = rest.iter().map(|(_, reading)| reading.site).collect();
         let field = state.field(&scene, &candidates);
         let criterion = state.criterion(&field);
-        let best = best_site(&criterion, state.readings.len());
-        let (index, reading) = rest.remove(best - state.readings.len());
+        let first = state.readings.len();
+        let all = (first..).zip(candidates.iter().map(|site| site.setting));
+        let Some(Choice { site, .. }) = chooser.best(&criterion, all) else {
+            break;
+        };
+        let (index, reading) = rest.remove(site - first);
         chosen.push(index);
+        chooser.add(reading.site.setting);
         state.add(reading);
     }
     Ok(chosen)
@@ -344,43 +347,30 @@ struct Chosen {
 
 /// The readings that lower the logarithm of the error most for their time, one after the other.
 fn choose(
+    state: &State,
     criterion: &Criterion<'_>,
     candidates: &[Site],
-    most: usize,
-    instrument: &Instrument,
+    options: &PlanOptions,
 ) -> Chosen {
-    let first = criterion.count() - candidates.len();
+    let first = state.readings.len();
+    let mut chooser = Chooser::new(&options.instrument, &state.settings(), candidates);
     let mut criterion = criterion.clone();
     let mut chosen = Chosen {
         sites: Vec::new(),
         errors: Vec::new(),
     };
-    let mut settings: Vec<Setting> = Vec::new();
-    let mut error = criterion.error();
-    while chosen.sites.len() < most.min(candidates.len()) {
-        let free = (0..candidates.len()).filter(|i| !chosen.sites.contains(&(first + i)));
-        let rated = free.map(|i| {
-            let with = criterion.error_with(first + i);
-            let seconds = instrument.further_seconds(&settings, &candidates[i].setting);
-            (i, with, (error / with).ln() / seconds)
-        });
-        let Some((best, with, _)) = rated.max_by(|a, b| a.2.total_cmp(&b.2)) else {
+    while chosen.sites.len() < options.most.max(2) {
+        let all = (first..).zip(candidates.iter().map(|site| site.setting));
+        let free = all.filter(|(site, _)| !chosen.sites.contains(site));
+        let Some(Choice { site, error }) = chooser.best(&criterion, free) else {
             break;
         };
-        criterion.choose(first + best);
-        chosen.sites.push(first + best);
-        chosen.errors.push(with);
-        settings.push(candidates[best].setting);
-        error = with;
+        criterion.choose(site);
+        chooser.add(candidates[site - first].setting);
+        chosen.sites.push(site);
+        chosen.errors.push(error);
     }
     chosen
-}
-
-/// The site from `first` on that lowers the error most.
-fn best_site(criterion: &Criterion<'_>, first: usize) -> usize {
-    let errors = (first..criterion.count()).map(|site| (site, criterion.error_with(site)));
-    let best = errors.min_by(|a, b| a.1.total_cmp(&b.1));
-    best.map_or(first, |(site, _)| site)
 }
 
 /// The error that is left with all candidates.
@@ -546,6 +536,27 @@ mod tests {
         assert!((2..=8).contains(&incidences.len()), "{incidences:?}");
         let last = readings.last().unwrap();
         assert!(last.prediction.error < 0.3 * plan.now.error);
+    }
+
+    /// However long a change of incidence takes: the error of an incidence is common to its readings.
+    #[test]
+    fn no_plan_has_all_readings_in_one_incidence() {
+        for material in MaterialClass::NAMED.map(|(class, _)| class) {
+            for change_seconds in [0.0, 120.0, 3600.0] {
+                let mut options = PlanOptions {
+                    material,
+                    ..PlanOptions::default()
+                };
+                options.instrument.change_seconds = change_seconds;
+                let plan = plan_readings(None, &options).unwrap();
+                let mut planned: Vec<f64> = plan.readings.iter().map(|r| r.setting.psi).collect();
+                planned.dedup();
+                assert!(
+                    planned.len() >= 3,
+                    "{material} {change_seconds} {planned:?}"
+                );
+            }
+        }
     }
 
     #[test]

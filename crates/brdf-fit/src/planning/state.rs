@@ -79,6 +79,14 @@ impl State {
         self.belief = Belief::new(&readings, Family::Paper, &self.prior, error, &near);
     }
 
+    /// The settings of the readings.
+    pub(super) fn settings(&self) -> Vec<Setting> {
+        self.readings
+            .iter()
+            .map(|reading| reading.site.setting)
+            .collect()
+    }
+
     /// The sites of a criterion: the readings, and then the candidates.
     pub(super) fn field(&self, scene: &[Site], candidates: &[Site]) -> Field<'_> {
         let own = self.readings.iter().map(|reading| reading.site);

@@ -6,7 +6,8 @@ use std::process::Output;
 
 use brdf_core::{AnyBrdf, Family, Geometry, ModelParameters};
 use brdf_fit::Measurements;
-use brdf_tests::{brdf_command, in_workspace, run_fit, unwrapped};
+use brdf_fit::planning::{Advice, PlanOptions, plan_readings};
+use brdf_tests::{brdf_command, in_workspace, run_fit, shared_data, unwrapped};
 
 fn run(arguments: &[&str]) -> Output {
     brdf_command().arg("plan").args(arguments).output().unwrap()
@@ -136,6 +137,75 @@ fn a_scan_is_reviewed_and_what_it_lacks_is_named() {
         .parse()
         .unwrap();
     assert!(needed <= 20, "{text}");
+}
+
+/// Whether the advice for a scan is that the model fails.
+fn fails(scan: &Measurements) -> bool {
+    let options = PlanOptions::default().within(scan);
+    let plan = plan_readings(Some(scan), &options).unwrap();
+    matches!(plan.advice, Advice::Fails { .. })
+}
+
+/// Of the measured samples, those that the model does not follow, and no other.
+#[test]
+fn the_model_fails_for_mirrors_and_narrow_peaks_and_for_no_paint_or_anodise() {
+    for entry in fs::read_dir(in_workspace("data/measured")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "csv") {
+            let scan = Measurements::read_csv(&path).unwrap();
+            let failing = scan
+                .by_wavelength()
+                .iter()
+                .filter(|scan| fails(scan))
+                .count();
+            assert_eq!(failing, 0, "{}", path.display());
+        }
+    }
+    let Some(shared) = shared_data() else {
+        return;
+    };
+    for (folder, expected) in [
+        ("mwir", true),
+        ("satellite", true),
+        ("rt300s", false),
+        ("ptfe", false),
+    ] {
+        for entry in fs::read_dir(shared.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|extension| extension == "csv") {
+                let scan = Measurements::read_csv(&path).unwrap();
+                for scan in scan.by_wavelength() {
+                    assert_eq!(fails(&scan), expected, "{}", path.display());
+                }
+            }
+        }
+    }
+}
+
+/// A broad lobe with a spike in the mirror direction: the advice names it, and what to do.
+#[test]
+fn a_scan_that_the_model_does_not_follow_gets_no_list_but_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("mirror.csv");
+    let mut rows = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
+    for psi in [10, 30, 50, 70] {
+        for theta in (-80..=80).step_by(10) {
+            let spike = if theta == -psi { 50.0 } else { 0.0 };
+            writeln!(rows, "{psi},{theta},{}", 0.05 + spike).unwrap();
+        }
+    }
+    fs::write(&scan, rows).unwrap();
+    let output = run(&[scan.to_str().unwrap(), "--in-plane"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = stdout(&output);
+    for part in [
+        "advice    the model fails for this surface: it misses the readings by ",
+        "most of all at the mirror direction",
+        "brdf fit FILE --model three+n",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    assert!(!text.contains("rank"), "{text}");
 }
 
 #[test]

@@ -188,6 +188,18 @@ impl State {
         own.log - log_value(&brdf(Family::Paper, &belief.mode), &own.site.geometry)
     }
 
+    /// The root mean square of the residuals r, for which the prior counts as two readings and the parameters as four:
+    ///
+    /// ```text
+    /// m^2 = (2 v + sum r^2)/(2 + N - 4),     v the variance of the error of a reading.
+    /// ```
+    pub(super) fn misfit(&self) -> f64 {
+        let squares: f64 = self.residuals().iter().map(|r| r * r).sum();
+        let of_prior = READINGS_OF_PRIOR * self.error.variance();
+        let degrees = READINGS_OF_PRIOR + self.readings.len() as f64 - 4.0;
+        ((of_prior + squares) / degrees.max(READINGS_OF_PRIOR)).sqrt()
+    }
+
     /// ln(measured/model) of each reading.
     pub(super) fn residuals(&self) -> Vec<f64> {
         let brdf = brdf(Family::Paper, &self.belief.mode);

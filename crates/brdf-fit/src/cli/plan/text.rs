@@ -29,12 +29,18 @@ fn scene(options: &PlanOptions) -> String {
     )
 }
 
+/// How to look at a scan that the model does not follow.
+const LOOK: &str = "brdf fit FILE --model three+n --weights relative --compare --plot FOLDER";
+
 /// What is planned.
 pub(super) fn plan(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOptions) -> String {
     let mut text = String::new();
     line(&mut text, "scene", &scene(options));
     line(&mut text, "so far", &so_far(plan, name, options));
-    line(&mut text, "error", &errors_now(plan));
+    // Of a model that fails, no prediction has a meaning.
+    if !matches!(plan.advice, Advice::Fails { .. }) {
+        line(&mut text, "error", &errors_now(plan));
+    }
     line(&mut text, "advice", &advice(plan, options));
     if plan.readings.is_empty() {
         return text;
@@ -95,6 +101,9 @@ fn errors_now(plan: &MeasurementPlan) -> String {
 }
 
 fn advice(plan: &MeasurementPlan, options: &PlanOptions) -> String {
+    if let Advice::Fails { .. } = plan.advice {
+        return format!("{}: {LOOK}", plan.advice);
+    }
     if plan.advice != Advice::Continue {
         return plan.advice.to_string();
     }

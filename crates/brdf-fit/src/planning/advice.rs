@@ -18,9 +18,9 @@ const STANDS_OUT: f64 = 1.5;
 /// The fewest readings of a region that stands out.
 const FEWEST_IN_REGION: usize = 2;
 
-/// The model fails beyond this misfit of ln f_r: the fits of `three+n` to the measured scans of paints, anodised
-/// surfaces and diffusers leave up to 0.17, choices of six readings of them up to 0.27; those to mirrors and to coatings
-/// with a narrow peak leave 0.34 and more.
+/// The model fails beyond this misfit of ln f_r: that of the measured paints, anodised surfaces and diffusers is at
+/// most 0.17 and within this limit for choices of six of their readings; that of mirrors and of coatings with a narrow
+/// peak is 0.34 and more.
 const LARGEST_MISFIT: f64 = 0.28;
 
 /// Whether further readings are worth their time.

@@ -34,11 +34,11 @@ pub use advice::{Advice, Region};
 pub use error::PlanError;
 pub use errors::ErrorModel;
 pub use instrument::{Instrument, SlowAxis};
-pub use list::{error_percent, rounded_deg};
+pub use list::{error_percent, error_percent_beside, rounded_deg};
 pub use planner::{
     MeasurementPlan, PlanOptions, PlannedReading, Prediction, choose_readings, plan_readings,
     predict,
 };
 pub use prior::MaterialClass;
-pub use review::{Gap, Review, ReviewStep, WITHIN as REVIEW_WITHIN, review};
+pub use review::{Gap, Review, ReviewStep, WITHIN as REVIEW_WITHIN, error_of, review};
 pub use setting::Setting;

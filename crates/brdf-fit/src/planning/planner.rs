@@ -10,9 +10,11 @@ use super::error::PlanError;
 use super::errors::ErrorModel;
 use super::instrument::Instrument;
 use super::prior::{MaterialClass, Prior, parameters};
-use super::scene_points::{directions, thinned};
+use super::scene_points::{DIRECTIONS, directions, thinned};
 use super::setting::{Setting, Site};
 use super::state::{Reading, State};
+use crate::fit::FitError;
+use crate::objective::{ObjectiveError, SIZES};
 use crate::scan::{Measurement, Measurements};
 
 /// More candidates are thinned evenly: a plan over 2000 takes about a second.
@@ -180,7 +182,7 @@ pub fn choose_readings(
         .filter_map(|(i, reading)| Some((i, Reading::new(reading)?)))
         .collect();
     let sites: Vec<Site> = all.iter().map(|(_, reading)| reading.site).collect();
-    let scene = thinned(&sites);
+    let scene = thinned(&sites, DIRECTIONS);
     let (mut first, mut rest): (Vec<_>, Vec<_>) =
         all.into_iter().partition(|(i, _)| pilot.contains(i));
     first.sort_by_key(|(i, _)| pilot.iter().position(|p| p == i));
@@ -217,7 +219,7 @@ pub fn predict(
     options.check()?;
     let (state, _) = options.state(Some(scan))?;
     let scene: Vec<Site> = over.iter().copied().filter_map(Site::new).collect();
-    let field = state.field(&thinned(&scene), &[]);
+    let field = state.field(&thinned(&scene, DIRECTIONS), &[]);
     let scale = state.scale(&field);
     Ok(prediction(&state.criterion(&field), scale))
 }
@@ -293,8 +295,7 @@ impl PlanOptions {
         if sites.is_empty() {
             return Err(PlanError::NoSetting);
         }
-        let every = sites.len().div_ceil(MOST_CANDIDATES);
-        Ok(sites.into_iter().step_by(every).collect())
+        Ok(thinned(&sites, MOST_CANDIDATES))
     }
 
     /// The tolerance of ln f_r.
@@ -317,20 +318,51 @@ impl PlanOptions {
     }
 }
 
+/// The number of free parameters: this many readings can be equal by chance.
+const FREE: usize = 4;
+
 /// The largest number of readings that a plan goes on from.
 const MOST_READINGS: usize = 20_000;
 
 /// Checks that a scan is one that readings can be planned for.
-fn check_scan(scan: &Measurements) -> Result<(), PlanError> {
+pub(super) fn check_scan(scan: &Measurements) -> Result<(), PlanError> {
     let count = scan.readings().len();
     if count > MOST_READINGS {
         let most = MOST_READINGS;
         return Err(PlanError::TooMany { count, most });
     }
     match scan.wavelengths().len() {
-        0 | 1 => Ok(()),
+        0 | 1 => check_values(scan),
         count => Err(PlanError::Wavelengths(count)),
     }
+}
+
+/// Checks the values as the fit does: readings above zero, of a size that the fit accepts, and not all equal.
+fn check_values(scan: &Measurements) -> Result<(), PlanError> {
+    let readings = scan.readings();
+    if !readings.is_empty() && above_zero(scan).is_empty() {
+        return Err(PlanError::NoneAboveZero(readings.len()));
+    }
+    let sizes = readings
+        .iter()
+        .map(|reading| (reading.brdf * reading.theta.cos()).abs());
+    let largest = sizes.fold(0.0, f64::max);
+    if largest > 0.0 && !SIZES.contains(&largest) {
+        return Err(FitError::from(ObjectiveError::Size(largest)).into());
+    }
+    let (count, first) = (readings.len(), readings.first().map(|reading| reading.brdf));
+    match first.filter(|value| readings.iter().all(|reading| reading.brdf == *value)) {
+        Some(value) if count > FREE => Err(FitError::AllEqual { count, value }.into()),
+        _ => Ok(()),
+    }
+}
+
+/// The indices of the readings above zero.
+pub(super) fn above_zero(scan: &Measurements) -> Vec<usize> {
+    let readings = scan.readings();
+    (0..readings.len())
+        .filter(|&i| readings[i].brdf > 0.0)
+        .collect()
 }
 
 /// Whether two sites are one direction pair, that of their mirror image in the plane of incidence included.
@@ -376,8 +408,8 @@ fn choose(
 /// The error that is left with all candidates.
 fn with_all(criterion: &Criterion<'_>, first: usize, count: usize) -> f64 {
     let mut criterion = criterion.clone();
-    let every = count.div_ceil(super::scene_points::DIRECTIONS);
-    for site in (first..first + count).step_by(every) {
+    let sites: Vec<usize> = (first..first + count).collect();
+    for site in thinned(&sites, DIRECTIONS) {
         criterion.choose(site);
     }
     criterion.error()
@@ -637,6 +669,24 @@ mod tests {
         assert_eq!(
             choose_readings(&scan, &[], 100, &options()).unwrap().len(),
             60
+        );
+    }
+
+    #[test]
+    fn readings_that_the_fit_refuses_are_no_scan_so_far() {
+        let settings = options().instrument.settings(&options().scene);
+        let message = |value: fn(&Setting) -> f64| {
+            let scan = measured(value, &settings[..12]);
+            plan_readings(Some(&scan), &options())
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(message(|_| 0.0).contains("none of 12 readings is above zero"));
+        assert!(message(|s| -s.psi).contains("none of 12 readings is above zero"));
+        assert!(message(|_| 0.25).contains("all 12 readings are 0.25"));
+        assert!(message(|s| 1e40 * (1.0 + s.psi)).contains("expected one between 1e-30 and 1e30"));
+        assert!(
+            message(|s| 1e-40 * (2.0 + s.theta)).contains("expected one between 1e-30 and 1e30")
         );
     }
 

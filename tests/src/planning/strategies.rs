@@ -141,7 +141,8 @@ fn piloted(scan: &Measurements, options: &PlanOptions, error: &dyn Fn(&[usize]) 
     Choices(counts.map(|(i, count)| (count, median(i))).collect())
 }
 
-fn above_zero(scan: &Measurements) -> Vec<usize> {
+/// The indices of the readings above zero.
+pub(super) fn above_zero(scan: &Measurements) -> Vec<usize> {
     let readings = scan.readings();
     (0..readings.len())
         .filter(|&i| readings[i].brdf > 0.0)

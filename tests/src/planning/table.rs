@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use brdf_fit::planning::{PlanOptions, REVIEW_WITHIN, choose_readings};
 use rayon::prelude::*;
 
-use super::strategies::quantile;
+use super::strategies::{above_zero, quantile};
 use super::{Choices, Sample, Strategy, error_of, predicted_error};
 
 /// The multiples of the error of the whole scan that count as reached.
@@ -37,10 +37,7 @@ impl Needed {
     pub fn of_all(samples: &[Sample], options: &PlanOptions) -> Vec<Self> {
         let of_sample = |sample: &Sample| {
             let scan = &sample.scan;
-            let readings = scan.readings();
-            let above: Vec<usize> = (0..readings.len())
-                .filter(|&i| readings[i].brdf > 0.0)
-                .collect();
+            let above = above_zero(scan);
             let full = error_of(scan, &above);
             let each = Strategy::ALL.iter();
             let choices = each.map(|&s| Choices::of(s, scan, full, options));

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use brdf_fit::planning::{PlanOptions, REVIEW_WITHIN};
 use brdf_tests::planning::{
-    Needed, Strategy, curves_csv, measured, predictions, ratios, simulated, table,
+    Needed, Strategy, curves_csv, measured, predictions, ratios, rises, simulated, table,
 };
 
 fn main() -> ExitCode {
@@ -27,21 +27,22 @@ fn main() -> ExitCode {
         print!("{}", predictions(&samples, &PlanOptions::default()));
         return ExitCode::SUCCESS;
     }
-    let strategies = Strategy::ALL;
-    let all = Needed::of_all(&samples, &strategies, &PlanOptions::default());
+    let all = Needed::of_all(&samples, &PlanOptions::default());
     if arguments.get(1).is_some_and(|word| word == "curves") {
-        print!("{}", curves_csv(&all, &strategies));
+        print!("{}", curves_csv(&all));
         return ExitCode::SUCCESS;
     }
-    println!("{}", table(&all, &strategies));
-    for within in REVIEW_WITHIN {
-        for first in [0, 1] {
-            let name = strategies[first].name();
-            println!(
-                "{name} over uniform grid, within {within}: {}",
-                ratios(&all, first, 2, within)
-            );
+    println!("{}", table(&all));
+    for first in [Strategy::Plan, Strategy::Untimed, Strategy::Pilot] {
+        for second in [Strategy::Uniform, Strategy::Incidences, Strategy::Random] {
+            for within in REVIEW_WITHIN {
+                let names = format!("{} over {}", first.name(), second.name());
+                println!("{names}, {within}: {}", ratios(&all, first, second, within));
+            }
         }
+    }
+    for strategy in Strategy::ALL {
+        println!("rise of {}: {}", strategy.name(), rises(&all, strategy));
     }
     ExitCode::SUCCESS
 }

@@ -11,51 +11,14 @@ mod table;
 
 pub use scans::{Sample, measured, simulated};
 pub use strategies::{Choices, Strategy};
-pub use table::{Needed, curves_csv, predictions, ratios, table};
+pub use table::{Needed, curves_csv, predictions, ratios, rises, table};
 
-use brdf_core::AnyBrdf;
+use brdf_fit::Measurements;
 use brdf_fit::planning::{PlanOptions, Setting, predict};
-use brdf_fit::{AssumedErrors, FitOptions, Measurements, Model, RefractiveIndex, Weights, fit};
 
-/// The fit of `three+n` with relative weights.
-pub fn options() -> FitOptions {
-    FitOptions {
-        model: Model::ThreeN,
-        refractive_index: Some(RefractiveIndex::Same(1.5)),
-        weights: Weights {
-            errors: AssumedErrors::Relative,
-            ..Weights::default()
-        },
-        ..FitOptions::default()
-    }
-}
-
-/// The root mean square of ln(theory/measured) over all readings above zero of a scan, of the fit to some of them;
-/// infinite where these cannot be fitted.
+/// [`planning::error_of`](brdf_fit::planning::error_of), infinite where the chosen readings cannot be fitted.
 pub fn error_of(scan: &Measurements, chosen: &[usize]) -> f64 {
-    let readings = chosen.iter().map(|&i| scan.readings()[i]).collect();
-    let fitted = Measurements::new("chosen", readings)
-        .ok()
-        .and_then(|chosen| fit(&chosen, &options()).ok());
-    fitted.map_or(f64::INFINITY, |fitted| {
-        let brdf = AnyBrdf::new(fitted.model().family(), &fitted.at()).expect("fitted parameters");
-        error_over(scan, &brdf)
-    })
-}
-
-/// The root mean square of ln(theory/measured) over all readings above zero.
-pub fn error_over(scan: &Measurements, brdf: &AnyBrdf) -> f64 {
-    let readings = scan.readings().iter().filter(|reading| reading.brdf > 0.0);
-    let squares = readings.map(|reading| {
-        let geometry = reading.geometry().expect("angles of a scan");
-        (brdf.value(&geometry).max(1e-300) / reading.brdf)
-            .ln()
-            .powi(2)
-    });
-    let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| {
-        (sum + square, count + 1.0)
-    });
-    (sum / count).sqrt()
+    brdf_fit::planning::error_of(scan, chosen).unwrap_or(f64::INFINITY)
 }
 
 /// The error that is predicted for the fit to some readings, over all readings above zero of the scan.

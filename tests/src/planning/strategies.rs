@@ -30,6 +30,8 @@ const PILOTS: u64 = 20;
 pub enum Strategy {
     /// By a plan, from nothing.
     Plan,
+    /// The same on an instrument whose changes of incidence take no time.
+    Untimed,
     /// By a plan, from six readings at random: the median of 20.
     Pilot,
     /// On a grid with one step in all angles.
@@ -44,8 +46,9 @@ pub enum Strategy {
 
 impl Strategy {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Plan,
+        Self::Untimed,
         Self::Pilot,
         Self::Uniform,
         Self::Incidences,
@@ -53,10 +56,17 @@ impl Strategy {
         Self::RandomWorst,
     ];
 
+    /// The place among all of them.
+    pub fn index(self) -> usize {
+        let found = Self::ALL.iter().position(|own| *own == self);
+        found.expect("a strategy")
+    }
+
     /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Plan => "plan",
+            Self::Untimed => "plan without times",
             Self::Pilot => "plan from 6 at random",
             Self::Uniform => "uniform grid",
             Self::Incidences => "grid by incidences",
@@ -76,6 +86,7 @@ impl Choices {
         let error = |chosen: &[usize]| error_of(scan, chosen) / full;
         match strategy {
             Strategy::Plan => planned(scan, &[], options, &error),
+            Strategy::Untimed => planned(scan, &[], &untimed(options), &error),
             Strategy::Pilot => piloted(scan, options, &error),
             Strategy::Uniform => grids(uniform(scan), &error),
             Strategy::Incidences => grids(by_incidence(scan), &error),
@@ -108,6 +119,13 @@ fn planned(
     )
 }
 
+/// The same options without the time of a change of incidence.
+fn untimed(options: &PlanOptions) -> PlanOptions {
+    let mut options = options.clone();
+    options.instrument.change_seconds = 0.0;
+    options
+}
+
 /// The median over the pilots at each number of readings.
 fn piloted(scan: &Measurements, options: &PlanOptions, error: &dyn Fn(&[usize]) -> f64) -> Choices {
     let above: Vec<usize> = above_zero(scan);
@@ -123,14 +141,16 @@ fn piloted(scan: &Measurements, options: &PlanOptions, error: &dyn Fn(&[usize]) 
     Choices(counts.map(|(i, count)| (count, median(i))).collect())
 }
 
-fn above_zero(scan: &Measurements) -> Vec<usize> {
+/// The indices of the readings above zero.
+pub(super) fn above_zero(scan: &Measurements) -> Vec<usize> {
     let readings = scan.readings();
     (0..readings.len())
         .filter(|&i| readings[i].brdf > 0.0)
         .collect()
 }
 
-fn quantile(values: impl Iterator<Item = f64>, fraction: f64) -> f64 {
+/// The value that a fraction of all are below.
+pub(super) fn quantile(values: impl Iterator<Item = f64>, fraction: f64) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     let index = (fraction * (values.len() - 1) as f64).round();

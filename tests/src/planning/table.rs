@@ -1,10 +1,12 @@
 //! The table and the curves of the numbers of readings.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use brdf_fit::planning::{PlanOptions, REVIEW_WITHIN, choose_readings};
 use rayon::prelude::*;
 
+use super::strategies::{above_zero, quantile};
 use super::{Choices, Sample, Strategy, error_of, predicted_error};
 
 /// The multiples of the error of the whole scan that count as reached.
@@ -23,18 +25,22 @@ pub struct Needed {
 }
 
 impl Needed {
+    /// The name without the wavelength.
+    fn sample(&self) -> &str {
+        match self.name.rsplit_once(' ') {
+            Some((sample, wavelength)) if wavelength.parse::<f64>().is_ok() => sample,
+            _ => &self.name,
+        }
+    }
+
     /// The errors of all strategies over each scan.
-    pub fn of_all(samples: &[Sample], strategies: &[Strategy], options: &PlanOptions) -> Vec<Self> {
+    pub fn of_all(samples: &[Sample], options: &PlanOptions) -> Vec<Self> {
         let of_sample = |sample: &Sample| {
             let scan = &sample.scan;
-            let readings = scan.readings();
-            let above: Vec<usize> = (0..readings.len())
-                .filter(|&i| readings[i].brdf > 0.0)
-                .collect();
+            let above = above_zero(scan);
             let full = error_of(scan, &above);
-            let choices = strategies
-                .iter()
-                .map(|&s| Choices::of(s, scan, full, options));
+            let each = Strategy::ALL.iter();
+            let choices = each.map(|&s| Choices::of(s, scan, full, options));
             Self {
                 name: sample.name.clone(),
                 readings: above.len(),
@@ -47,10 +53,10 @@ impl Needed {
 }
 
 /// A table in Markdown of the readings that each strategy needs.
-pub fn table(all: &[Needed], strategies: &[Strategy]) -> String {
+pub fn table(all: &[Needed]) -> String {
     let mut text = "| scan | readings | error of all |".to_owned();
     let mut rule = "|---|---|---|".to_owned();
-    for strategy in strategies {
+    for strategy in Strategy::ALL {
         let _ = write!(text, " {} |", strategy.name());
         rule.push_str("---|");
     }
@@ -74,38 +80,68 @@ fn number(count: Option<usize>) -> String {
     count.map_or_else(|| "-".to_owned(), |count| count.to_string())
 }
 
-/// The readings of one strategy over those of another, for the scans where both reach the error: the median, the
-/// largest, and the number of scans in which the first alone does not reach it.
-pub fn ratios(all: &[Needed], first: usize, second: usize, within: f64) -> String {
-    let mut ratios = Vec::new();
+/// The readings of one strategy over those of another, where both reach a multiple of the error: the median over the
+/// scans and over the samples (each by the median over its wavelengths), the largest, and the numbers of scans in which
+/// the first needs more, or either alone does not reach it.
+pub fn ratios(all: &[Needed], first: Strategy, second: Strategy, within: f64) -> String {
+    let places = [first, second].map(Strategy::index);
+    let mut ratios: BTreeMap<&str, Vec<f64>> = BTreeMap::new();
     let (mut not_first, mut not_second) = (0, 0);
     for needed in all {
-        let [a, b] = [first, second].map(|i| needed.choices[i].needed(within));
+        let [a, b] = places.map(|i| needed.choices[i].needed(within));
         match (a, b) {
-            (Some(a), Some(b)) => ratios.push(a as f64 / b as f64),
+            (Some(a), Some(b)) => ratios
+                .entry(needed.sample())
+                .or_default()
+                .push(a as f64 / b as f64),
             (None, Some(_)) => not_first += 1,
             (Some(_), None) => not_second += 1,
             (None, None) => {}
         }
     }
-    ratios.sort_by(f64::total_cmp);
-    let Some(largest) = ratios.last() else {
+    let every: Vec<f64> = ratios.values().flatten().copied().collect();
+    if every.is_empty() {
         return "no scan in which both reach it".to_owned();
-    };
-    let more = ratios.iter().filter(|ratio| **ratio > 1.0).count();
+    }
+    let of_samples = ratios
+        .values()
+        .map(|own| quantile(own.iter().copied(), 0.5));
     format!(
-        "median {:.2}, largest {largest:.2}, more in {more} of {}; the first alone does not reach it in \
+        "median {:.2}, each sample once {:.2}, largest {:.2}, more in {} of {}; the first alone does not reach it in \
          {not_first}, the second alone in {not_second}",
-        ratios[ratios.len() / 2],
-        ratios.len()
+        quantile(every.iter().copied(), 0.5),
+        quantile(of_samples, 0.5),
+        quantile(every.iter().copied(), 1.0),
+        every.iter().filter(|ratio| **ratio > 1.0).count(),
+        every.len()
     )
 }
 
+/// From this number of readings on an error should not rise.
+const RISES_FROM: usize = 8;
+
+/// By how much the error of a strategy rises above its lowest value before, from eight readings on.
+pub fn rises(all: &[Needed], strategy: Strategy) -> String {
+    let of_scan = |needed: &Needed| {
+        let (mut lowest, mut rise) = (f64::INFINITY, 1.0_f64);
+        for (count, error) in &needed.choices[strategy.index()].0 {
+            if *count >= RISES_FROM && error.is_finite() {
+                rise = rise.max(error / lowest.min(*error));
+                lowest = lowest.min(*error);
+            }
+        }
+        rise
+    };
+    let rises: Vec<f64> = all.iter().map(of_scan).collect();
+    let at = |fraction| quantile(rises.iter().copied(), fraction);
+    format!("median {:.2}, nine tenths {:.2}", at(0.5), at(0.9))
+}
+
 /// The errors of all strategies by the number of readings: scan, strategy, readings, multiple of the error of all.
-pub fn curves_csv(all: &[Needed], strategies: &[Strategy]) -> String {
+pub fn curves_csv(all: &[Needed]) -> String {
     let mut text = "scan,strategy,readings,error_over_full\n".to_owned();
     for needed in all {
-        for (strategy, choices) in strategies.iter().zip(&needed.choices) {
+        for (strategy, choices) in Strategy::ALL.iter().zip(&needed.choices) {
             for (count, error) in &choices.0 {
                 let _ = writeln!(
                     text,

@@ -62,11 +62,15 @@ pub(super) enum Failure {
     #[error("{}", explain::plan(.0))]
     Plan(#[from] PlanError),
     /// A scan without the wavelength that is planned for.
-    #[error("no scan of {wavelength_um} um: expected one of {}", listed(.found, ", "))]
+    #[error("no scan of {wavelength_um} um: {}", expected_wavelengths(.found))]
     NoScan {
         wavelength_um: f64,
         found: Vec<String>,
     },
+    #[error("the files state different refractive indices: expected one sample for --join")]
+    Join,
+    #[error("{0} files: expected one, or --join for the files of one sample")]
+    SeveralFiles(usize),
     /// A failure that concerns one file, or one wavelength of it.
     #[error("{place}: {failure}")]
     At { place: String, failure: Box<Self> },
@@ -100,6 +104,15 @@ pub(super) enum Failure {
         "--plot: there are {0} figures, one for each wavelength: standard output takes only one"
     )]
     SeveralFigures(usize),
+}
+
+/// The wavelengths that an option could name; without any, the scan has none.
+fn expected_wavelengths(found: &[String]) -> String {
+    if found.is_empty() {
+        "the file states no wavelength, expected no --wavelength".to_owned()
+    } else {
+        format!("expected one of {}", listed(found, ", "))
+    }
 }
 
 impl Failure {

@@ -15,6 +15,7 @@ mod outcome;
 mod plan;
 mod problems;
 mod progress;
+mod reading;
 mod scene;
 mod stream;
 mod threads;

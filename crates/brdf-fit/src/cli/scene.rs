@@ -9,11 +9,21 @@ use clap::Args;
 #[derive(Args)]
 pub(super) struct SceneArguments {
     /// Incidence angles psi of the scene, in degrees, as FROM:TO or as a single angle
-    #[arg(long, value_name = "RANGE", default_value = "0:85")]
+    #[arg(
+        long,
+        value_name = "RANGE",
+        default_value = "0:85",
+        allow_hyphen_values = true
+    )]
     incidence: Range,
 
     /// Magnitudes of the view angle theta of the scene, in degrees, as FROM:TO or as a single angle
-    #[arg(long, value_name = "RANGE", default_value = "0:85")]
+    #[arg(
+        long,
+        value_name = "RANGE",
+        default_value = "0:85",
+        allow_hyphen_values = true
+    )]
     view: Range,
 
     /// Restrict the view directions of the scene to the plane of incidence

@@ -41,6 +41,11 @@ pub fn print_text(text: &str) -> io::Result<()> {
     print(printable(text).as_bytes())
 }
 
+/// Prints a text to standard error, beside data on standard output. A failure to do so is ignored.
+pub fn print_note(text: &str) {
+    let _ = write!(io::stderr(), "{}", printable(text));
+}
+
 /// Prints an error message to standard error. A failure to do so is ignored.
 pub fn print_error(message: &str) {
     let name = if io::stderr().is_terminal() {

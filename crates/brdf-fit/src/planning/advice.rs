@@ -1,7 +1,8 @@
-//! When to stop: the tolerance is kept, or what is left is the misfit of the model.
+//! When to stop: the tolerance is kept, or what is left is the misfit of the model, or the model fails.
 
 use std::fmt;
 
+use super::list::error_percent;
 use super::setting::Setting;
 use super::state::State;
 
@@ -17,8 +18,13 @@ const STANDS_OUT: f64 = 1.5;
 /// The fewest readings of a region that stands out.
 const FEWEST_IN_REGION: usize = 2;
 
+/// The model fails beyond this misfit of ln f_r: that of the measured paints, anodised surfaces and diffusers is at
+/// most 0.17 and within this limit for choices of six of their readings; that of mirrors and of coatings with a narrow
+/// peak is 0.34 and more.
+const LARGEST_MISFIT: f64 = 0.28;
+
 /// Whether further readings are worth their time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Advice {
     /// Further readings lower the error.
@@ -29,6 +35,13 @@ pub enum Advice {
     /// The error, predicted or cross-validated, is above the tolerance, and no readings of the instrument would lower
     /// it: the model misses the surface, most of all in a region.
     Misfit(Region),
+    /// The model does not follow the readings, so that no prediction of it holds.
+    Fails {
+        /// The root mean square of ln(measured/model).
+        misfit: f64,
+        /// Where it is largest.
+        region: Region,
+    },
 }
 
 /// A part of the directions.
@@ -113,6 +126,16 @@ impl fmt::Display for Advice {
                 f,
                 "more readings of this kind will not help: what is left is the misfit of the model, most of all at {region}"
             ),
+            Self::Fails { misfit, region } => write!(
+                f,
+                "the model fails for this surface: it misses the readings by {} rms, {}, so that its predictions do not \
+                 hold; look at the fit, and choose another model, or measure a table",
+                error_percent(*misfit),
+                match region {
+                    Region::Everywhere => "in no direction more than in others".to_owned(),
+                    region => format!("most of all at {region}"),
+                }
+            ),
         }
     }
 }
@@ -133,8 +156,12 @@ impl Advice {
         }
         let is_within = now.max(validated.unwrap_or(f64::INFINITY)) <= tolerance;
         let is_unchanged = |later: f64| later > (1.0 - WORTHWHILE) * now;
+        let misfit = state.misfit();
         if is_within && is_unchanged(after_two) {
             Self::Enough
+        } else if !is_within && misfit > LARGEST_MISFIT {
+            let region = Region::worst(state);
+            Self::Fails { misfit, region }
         } else if !is_within && is_unchanged(limit) {
             Self::Misfit(Region::worst(state))
         } else {

@@ -1,6 +1,7 @@
 //! Why a plan cannot be made.
 
 use crate::fit::FitError;
+use crate::format::counted;
 
 /// Why readings cannot be planned or reviewed.
 #[derive(Debug, thiserror::Error)]
@@ -34,14 +35,20 @@ pub enum PlanError {
     )]
     NoSetting,
     /// A scan of too few readings above zero for a review.
-    #[error("{count} readings above zero: expected at least {least} for a review")]
+    #[error("{} above zero: expected at least {least} for a review", counted(*.count, "reading"))]
     TooFew {
         /// How many there are.
         count: usize,
         /// How many are needed.
         least: usize,
     },
-    /// The fit of all readings.
+    /// Readings none of which has a logarithm.
+    #[error(
+        "none of {} is above zero: expected readings of f_r (dark signal subtracted twice, another column?)",
+        counted(*.0, "reading")
+    )]
+    NoneAboveZero(usize),
+    /// Readings that cannot be fitted.
     #[error(transparent)]
     Fit(#[from] FitError),
 }

@@ -78,13 +78,17 @@ impl ErrorModel {
 
     /// The covariance of the errors of two different readings, without the misfit.
     pub(super) fn common(&self, a: &Place, b: &Place) -> f64 {
-        let apart = (a.site.setting.psi - b.site.setting.psi).abs();
-        if apart < SAME_INCIDENCE {
+        if is_same_incidence(a.site.setting.psi, b.site.setting.psi) {
             self.incidence.powi(2)
         } else {
             0.0
         }
     }
+}
+
+/// Whether two incidence angles are one.
+pub(super) fn is_same_incidence(a: f64, b: f64) -> bool {
+    (a - b).abs() < SAME_INCIDENCE
 }
 
 /// A setting and the tilt of its facet in widths of the lobe.

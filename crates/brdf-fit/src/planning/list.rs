@@ -64,3 +64,50 @@ pub fn error_percent(error: f64) -> String {
     }
     format!("{} %", crate::format::two_digits(100.0 * error.exp_m1()))
 }
+
+/// The same with as many digits, up to six more, as show on which side of a tolerance it is.
+pub fn error_percent_beside(error: f64, tolerance: f64) -> String {
+    let short = error_percent(error);
+    let Some(rounded) = short
+        .strip_suffix(" %")
+        .filter(|text| !text.starts_with('>'))
+    else {
+        return short;
+    };
+    let [own, limit] = [error, tolerance].map(|error| 100.0 * error.exp_m1());
+    let is_true = |text: &str| {
+        let shown: Option<f64> = text.parse().ok();
+        shown.is_some_and(|shown| shown.total_cmp(&limit) == own.total_cmp(&limit))
+    };
+    if is_true(rounded) {
+        return short;
+    }
+    let decimals = rounded
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    let mut longer = (decimals + 1..=decimals + 6).map(|decimals| format!("{own:.decimals$}"));
+    longer
+        .find(|text| is_true(text))
+        .map_or(short, |text| format!("{text} %"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_beside_its_tolerance_is_not_rounded_to_it() {
+        let logs = |percent: f64| (0.01 * percent).ln_1p();
+        let beside = |error, tolerance| error_percent_beside(logs(error), logs(tolerance));
+        assert_eq!(beside(10.4, 10.0), "10.4 %");
+        assert_eq!(beside(9.996, 10.0), "9.996 %");
+        assert_eq!(beside(10.0, 10.0), "10 %");
+        assert_eq!(beside(12.3, 10.0), "12 %");
+        assert_eq!(beside(5.04, 10.0), "5.0 %");
+        assert_eq!(beside(9.04, 9.5), "9.0 %");
+        assert_eq!(beside(9.496, 9.5), "9.496 %");
+        // A tolerance that two digits would not show.
+        assert_eq!(beside(10.4, 10.2), "10.4 %");
+        assert_eq!(beside(2000.0, 10.0), ">900 %");
+    }
+}

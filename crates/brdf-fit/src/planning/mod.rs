@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! prior, setting, errors -> belief -> criterion -> state -> advice --+
-//! instrument, scene_points ------------------------------------------+-> planner -> review
+//!                        instrument -> choice -----------------------+-> planner -> review
+//!                        scene_points -------------------------------+
 //! ```
 //!
 //! A plan chooses the readings whose fit has the smallest mean square error of ln f_r over the directions of a scene
@@ -16,6 +17,7 @@
 
 mod advice;
 mod belief;
+mod choice;
 mod criterion;
 mod error;
 mod errors;
@@ -32,11 +34,11 @@ pub use advice::{Advice, Region};
 pub use error::PlanError;
 pub use errors::ErrorModel;
 pub use instrument::{Instrument, SlowAxis};
-pub use list::{error_percent, rounded_deg};
+pub use list::{error_percent, error_percent_beside, rounded_deg};
 pub use planner::{
     MeasurementPlan, PlanOptions, PlannedReading, Prediction, choose_readings, plan_readings,
     predict,
 };
 pub use prior::MaterialClass;
-pub use review::{Gap, Review, ReviewStep, WITHIN as REVIEW_WITHIN, review};
+pub use review::{Gap, Review, ReviewStep, WITHIN as REVIEW_WITHIN, error_of, review};
 pub use setting::Setting;

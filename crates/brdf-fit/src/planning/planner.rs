@@ -4,14 +4,17 @@ use brdf_core::ModelParameters;
 use brdf_core::scene::{Azimuth, Domain};
 
 use super::advice::{Advice, WORTHWHILE};
+use super::choice::{Choice, Chooser};
 use super::criterion::Criterion;
 use super::error::PlanError;
 use super::errors::ErrorModel;
 use super::instrument::Instrument;
 use super::prior::{MaterialClass, Prior, parameters};
-use super::scene_points::{directions, thinned};
+use super::scene_points::{DIRECTIONS, directions, thinned};
 use super::setting::{Setting, Site};
 use super::state::{Reading, State};
+use crate::fit::FitError;
+use crate::objective::{ObjectiveError, SIZES};
 use crate::scan::{Measurement, Measurements};
 
 /// More candidates are thinned evenly: a plan over 2000 takes about a second.
@@ -121,12 +124,7 @@ pub fn plan_readings(
     let criterion = state.criterion(&field);
     let scale = state.scale(&field);
     let now = prediction(&criterion, scale);
-    let chosen = choose(
-        &criterion,
-        &candidates,
-        options.most.max(2),
-        &options.instrument,
-    );
+    let chosen = choose(&state, &criterion, &candidates, options);
     let predicted = chosen.errors.iter().map(|error| scale * error);
     let all = scale * with_all(&criterion, state.readings.len(), candidates.len());
     let limit = predicted.fold(all.min(now.error), f64::min);
@@ -146,7 +144,7 @@ pub fn plan_readings(
     );
     let kept = match advice {
         Advice::Continue => options.kept(&chosen.errors, scale),
-        Advice::Enough | Advice::Misfit(_) => 0,
+        Advice::Enough | Advice::Misfit(_) | Advice::Fails { .. } => 0,
     };
     let sites: Vec<usize> = chosen.sites[..kept].to_vec();
     Ok(MeasurementPlan {
@@ -162,7 +160,8 @@ pub fn plan_readings(
 }
 
 /// Chooses readings of a scan one after the other as [`plan_readings`] does, the value of each being known
-/// before the next is chosen: the indices of `count` readings, the first of which are those of `pilot`.
+/// before the next is chosen: the indices of `count` readings, the first of which are those of `pilot`. Times
+/// count as they do there: an incidence that was chosen before is no change of it.
 ///
 /// The scene is the scan itself: each of its readings counts alike.
 ///
@@ -183,19 +182,25 @@ pub fn choose_readings(
         .filter_map(|(i, reading)| Some((i, Reading::new(reading)?)))
         .collect();
     let sites: Vec<Site> = all.iter().map(|(_, reading)| reading.site).collect();
-    let scene = thinned(&sites);
+    let scene = thinned(&sites, DIRECTIONS);
     let (mut first, mut rest): (Vec<_>, Vec<_>) =
         all.into_iter().partition(|(i, _)| pilot.contains(i));
     first.sort_by_key(|(i, _)| pilot.iter().position(|p| p == i));
     let (mut chosen, readings): (Vec<usize>, Vec<Reading>) = first.into_iter().unzip();
     let mut state = State::new(Prior::of(options.material), options.errors, readings);
-    while chosen.len() < count && !rest.is_empty() {
+    let mut chooser = Chooser::new(&options.instrument, &state.settings(), &sites);
+    while chosen.len() < count {
         let candidates: Vec<Site> = rest.iter().map(|(_, reading)| reading.site).collect();
         let field = state.field(&scene, &candidates);
         let criterion = state.criterion(&field);
-        let best = best_site(&criterion, state.readings.len());
-        let (index, reading) = rest.remove(best - state.readings.len());
+        let first = state.readings.len();
+        let all = (first..).zip(candidates.iter().map(|site| site.setting));
+        let Some(Choice { site, .. }) = chooser.best(&criterion, all) else {
+            break;
+        };
+        let (index, reading) = rest.remove(site - first);
         chosen.push(index);
+        chooser.add(reading.site.setting);
         state.add(reading);
     }
     Ok(chosen)
@@ -214,7 +219,7 @@ pub fn predict(
     options.check()?;
     let (state, _) = options.state(Some(scan))?;
     let scene: Vec<Site> = over.iter().copied().filter_map(Site::new).collect();
-    let field = state.field(&thinned(&scene), &[]);
+    let field = state.field(&thinned(&scene, DIRECTIONS), &[]);
     let scale = state.scale(&field);
     Ok(prediction(&state.criterion(&field), scale))
 }
@@ -290,8 +295,7 @@ impl PlanOptions {
         if sites.is_empty() {
             return Err(PlanError::NoSetting);
         }
-        let every = sites.len().div_ceil(MOST_CANDIDATES);
-        Ok(sites.into_iter().step_by(every).collect())
+        Ok(thinned(&sites, MOST_CANDIDATES))
     }
 
     /// The tolerance of ln f_r.
@@ -314,20 +318,51 @@ impl PlanOptions {
     }
 }
 
+/// The number of free parameters: this many readings can be equal by chance.
+const FREE: usize = 4;
+
 /// The largest number of readings that a plan goes on from.
 const MOST_READINGS: usize = 20_000;
 
 /// Checks that a scan is one that readings can be planned for.
-fn check_scan(scan: &Measurements) -> Result<(), PlanError> {
+pub(super) fn check_scan(scan: &Measurements) -> Result<(), PlanError> {
     let count = scan.readings().len();
     if count > MOST_READINGS {
         let most = MOST_READINGS;
         return Err(PlanError::TooMany { count, most });
     }
     match scan.wavelengths().len() {
-        0 | 1 => Ok(()),
+        0 | 1 => check_values(scan),
         count => Err(PlanError::Wavelengths(count)),
     }
+}
+
+/// Checks the values as the fit does: readings above zero, of a size that the fit accepts, and not all equal.
+fn check_values(scan: &Measurements) -> Result<(), PlanError> {
+    let readings = scan.readings();
+    if !readings.is_empty() && above_zero(scan).is_empty() {
+        return Err(PlanError::NoneAboveZero(readings.len()));
+    }
+    let sizes = readings
+        .iter()
+        .map(|reading| (reading.brdf * reading.theta.cos()).abs());
+    let largest = sizes.fold(0.0, f64::max);
+    if largest > 0.0 && !SIZES.contains(&largest) {
+        return Err(FitError::from(ObjectiveError::Size(largest)).into());
+    }
+    let (count, first) = (readings.len(), readings.first().map(|reading| reading.brdf));
+    match first.filter(|value| readings.iter().all(|reading| reading.brdf == *value)) {
+        Some(value) if count > FREE => Err(FitError::AllEqual { count, value }.into()),
+        _ => Ok(()),
+    }
+}
+
+/// The indices of the readings above zero.
+pub(super) fn above_zero(scan: &Measurements) -> Vec<usize> {
+    let readings = scan.readings();
+    (0..readings.len())
+        .filter(|&i| readings[i].brdf > 0.0)
+        .collect()
 }
 
 /// Whether two sites are one direction pair, that of their mirror image in the plane of incidence included.
@@ -344,50 +379,37 @@ struct Chosen {
 
 /// The readings that lower the logarithm of the error most for their time, one after the other.
 fn choose(
+    state: &State,
     criterion: &Criterion<'_>,
     candidates: &[Site],
-    most: usize,
-    instrument: &Instrument,
+    options: &PlanOptions,
 ) -> Chosen {
-    let first = criterion.count() - candidates.len();
+    let first = state.readings.len();
+    let mut chooser = Chooser::new(&options.instrument, &state.settings(), candidates);
     let mut criterion = criterion.clone();
     let mut chosen = Chosen {
         sites: Vec::new(),
         errors: Vec::new(),
     };
-    let mut settings: Vec<Setting> = Vec::new();
-    let mut error = criterion.error();
-    while chosen.sites.len() < most.min(candidates.len()) {
-        let free = (0..candidates.len()).filter(|i| !chosen.sites.contains(&(first + i)));
-        let rated = free.map(|i| {
-            let with = criterion.error_with(first + i);
-            let seconds = instrument.further_seconds(&settings, &candidates[i].setting);
-            (i, with, (error / with).ln() / seconds)
-        });
-        let Some((best, with, _)) = rated.max_by(|a, b| a.2.total_cmp(&b.2)) else {
+    while chosen.sites.len() < options.most.max(2) {
+        let all = (first..).zip(candidates.iter().map(|site| site.setting));
+        let free = all.filter(|(site, _)| !chosen.sites.contains(site));
+        let Some(Choice { site, error }) = chooser.best(&criterion, free) else {
             break;
         };
-        criterion.choose(first + best);
-        chosen.sites.push(first + best);
-        chosen.errors.push(with);
-        settings.push(candidates[best].setting);
-        error = with;
+        criterion.choose(site);
+        chooser.add(candidates[site - first].setting);
+        chosen.sites.push(site);
+        chosen.errors.push(error);
     }
     chosen
-}
-
-/// The site from `first` on that lowers the error most.
-fn best_site(criterion: &Criterion<'_>, first: usize) -> usize {
-    let errors = (first..criterion.count()).map(|site| (site, criterion.error_with(site)));
-    let best = errors.min_by(|a, b| a.1.total_cmp(&b.1));
-    best.map_or(first, |(site, _)| site)
 }
 
 /// The error that is left with all candidates.
 fn with_all(criterion: &Criterion<'_>, first: usize, count: usize) -> f64 {
     let mut criterion = criterion.clone();
-    let every = count.div_ceil(super::scene_points::DIRECTIONS);
-    for site in (first..first + count).step_by(every) {
+    let sites: Vec<usize> = (first..first + count).collect();
+    for site in thinned(&sites, DIRECTIONS) {
         criterion.choose(site);
     }
     criterion.error()
@@ -512,7 +534,7 @@ mod tests {
         let brdf = truth(Family::Paper);
         let with_peak = |setting: &Setting| {
             let apart = setting.from_source() / 12_f64.to_radians();
-            value(&brdf, setting) * (1.0 + 4.0 * (-0.5 * apart * apart).exp())
+            value(&brdf, setting) * (1.0 + (-0.5 * apart * apart).exp())
         };
         let options = PlanOptions {
             tolerance: 0.05,
@@ -526,6 +548,48 @@ mod tests {
         let plan = plan_readings(Some(&scan), &coarse).unwrap();
         assert_eq!(plan.advice, Advice::Misfit(Region::Retro), "{plan:?}");
         assert!(plan.readings.is_empty());
+    }
+
+    /// A mirror with haze: what is planned for it ends with the words that the model fails, and where.
+    #[test]
+    fn a_surface_that_the_model_does_not_follow_gets_no_plan() {
+        let brdf = truth(Family::Paper);
+        let with_peak = |setting: &Setting| {
+            let apart = setting.from_mirror() / 3_f64.to_radians();
+            value(&brdf, setting) * (1.0 + 40.0 * (-0.5 * apart * apart).exp())
+        };
+        let (settings, plan) = follow(with_peak, &options());
+        assert!(settings.len() <= 36, "{}", settings.len());
+        let Advice::Fails { misfit, region } = plan.advice else {
+            panic!("{plan:?}")
+        };
+        assert!(misfit > 0.3 && plan.readings.is_empty(), "{plan:?}");
+        assert_eq!(region, Region::Mirror);
+        let every = options().instrument.settings(&options().scene);
+        let scan = measured(with_peak, &every);
+        let all = plan_readings(Some(&scan), &PlanOptions::default()).unwrap();
+        assert!(
+            matches!(
+                all.advice,
+                Advice::Fails {
+                    region: Region::Mirror,
+                    ..
+                }
+            ),
+            "{all:?}"
+        );
+    }
+
+    #[test]
+    fn surfaces_of_other_models_are_no_failure() {
+        for family in [Family::Smith, Family::Ggx, Family::Beckmann] {
+            let brdf = truth(family);
+            let (_, plan) = follow(|setting| value(&brdf, setting), &options());
+            assert!(
+                !matches!(plan.advice, Advice::Fails { .. }),
+                "{family:?} {plan:?}"
+            );
+        }
     }
 
     #[test]
@@ -546,6 +610,27 @@ mod tests {
         assert!((2..=8).contains(&incidences.len()), "{incidences:?}");
         let last = readings.last().unwrap();
         assert!(last.prediction.error < 0.3 * plan.now.error);
+    }
+
+    /// However long a change of incidence takes: the error of an incidence is common to its readings.
+    #[test]
+    fn no_plan_has_all_readings_in_one_incidence() {
+        for material in MaterialClass::NAMED.map(|(class, _)| class) {
+            for change_seconds in [0.0, 120.0, 3600.0] {
+                let mut options = PlanOptions {
+                    material,
+                    ..PlanOptions::default()
+                };
+                options.instrument.change_seconds = change_seconds;
+                let plan = plan_readings(None, &options).unwrap();
+                let mut planned: Vec<f64> = plan.readings.iter().map(|r| r.setting.psi).collect();
+                planned.dedup();
+                assert!(
+                    planned.len() >= 3,
+                    "{material} {change_seconds} {planned:?}"
+                );
+            }
+        }
     }
 
     #[test]
@@ -584,6 +669,24 @@ mod tests {
         assert_eq!(
             choose_readings(&scan, &[], 100, &options()).unwrap().len(),
             60
+        );
+    }
+
+    #[test]
+    fn readings_that_the_fit_refuses_are_no_scan_so_far() {
+        let settings = options().instrument.settings(&options().scene);
+        let message = |value: fn(&Setting) -> f64| {
+            let scan = measured(value, &settings[..12]);
+            plan_readings(Some(&scan), &options())
+                .unwrap_err()
+                .to_string()
+        };
+        assert!(message(|_| 0.0).contains("none of 12 readings is above zero"));
+        assert!(message(|s| -s.psi).contains("none of 12 readings is above zero"));
+        assert!(message(|_| 0.25).contains("all 12 readings are 0.25"));
+        assert!(message(|s| 1e40 * (1.0 + s.psi)).contains("expected one between 1e-30 and 1e30"));
+        assert!(
+            message(|s| 1e-40 * (2.0 + s.theta)).contains("expected one between 1e-30 and 1e30")
         );
     }
 

@@ -5,7 +5,7 @@ use brdf_core::scene::Domain;
 
 use super::advice::Region;
 use super::error::PlanError;
-use super::planner::{PlanOptions, choose_readings};
+use super::planner::{PlanOptions, above_zero, check_scan, choose_readings};
 use super::scene_points::directions;
 use super::setting::Setting;
 use crate::fit::{FitOptions, fit};
@@ -90,6 +90,7 @@ impl Review {
 ///
 /// Several wavelengths, too few readings above zero, or a scan that cannot be fitted.
 pub fn review(scan: &Measurements, options: &PlanOptions) -> Result<Review, PlanError> {
+    check_scan(scan)?;
     let above = above_zero(scan);
     if above.len() <= FEWEST {
         return Err(PlanError::TooFew {
@@ -114,15 +115,13 @@ pub fn review(scan: &Measurements, options: &PlanOptions) -> Result<Review, Plan
     })
 }
 
-fn above_zero(scan: &Measurements) -> Vec<usize> {
-    let readings = scan.readings();
-    (0..readings.len())
-        .filter(|&i| readings[i].brdf > 0.0)
-        .collect()
-}
-
-/// The error over all readings of the fit to some of them.
-fn error_of(scan: &Measurements, chosen: &[usize]) -> Result<f64, PlanError> {
+/// The root mean square of ln(theory/measured) over all readings above zero of a scan, of the fit of `three+n` with
+/// relative weights to those of these indices.
+///
+/// # Errors
+///
+/// The chosen readings cannot be fitted.
+pub fn error_of(scan: &Measurements, chosen: &[usize]) -> Result<f64, PlanError> {
     let options = FitOptions {
         model: Model::ThreeN,
         refractive_index: Some(RefractiveIndex::Same(crate::model::DEFAULT_N)),

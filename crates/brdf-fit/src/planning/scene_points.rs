@@ -33,11 +33,11 @@ pub(super) fn directions(scene: &Domain) -> Vec<Site> {
     (0..DIRECTIONS).filter_map(direction).collect()
 }
 
-/// At most [`DIRECTIONS`] of the sites, evenly.
-pub(super) fn thinned(sites: &[Site]) -> Vec<Site> {
-    let count = sites.len();
-    let kept = count.min(DIRECTIONS);
-    (0..kept).map(|i| sites[i * count / kept]).collect()
+/// At most so many of the items, evenly.
+pub(super) fn thinned<T: Copy>(items: &[T], most: usize) -> Vec<T> {
+    let count = items.len();
+    let kept = count.min(most);
+    (0..kept).map(|i| items[i * count / kept]).collect()
 }
 
 #[cfg(test)]

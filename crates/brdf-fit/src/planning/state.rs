@@ -7,6 +7,7 @@ use super::belief::{Belief, LogReading, brdf, log_slopes, log_value};
 use super::criterion::{Criterion, Field, OTHER_FAMILIES};
 use super::errors::ErrorModel;
 use super::prior::{Logs, Prior};
+use super::scene_points::thinned;
 use super::setting::{Setting, Site};
 use crate::scan::Measurement;
 
@@ -15,6 +16,9 @@ const READINGS_OF_PRIOR: f64 = 2.0;
 
 /// More readings are thinned where the work grows with their cube.
 const MOST_FOR_SCALE: usize = 200;
+
+/// No more readings are predicted from the others, each by a fit.
+const MOST_LEFT_OUT: usize = 50;
 
 /// The width of the lobe of GGX and Beckmann that resembles one of k1 = 1.
 const SIMILAR_WIDTH: f64 = 1.5;
@@ -79,6 +83,14 @@ impl State {
         self.belief = Belief::new(&readings, Family::Paper, &self.prior, error, &near);
     }
 
+    /// The settings of the readings.
+    pub(super) fn settings(&self) -> Vec<Setting> {
+        self.readings
+            .iter()
+            .map(|reading| reading.site.setting)
+            .collect()
+    }
+
     /// The sites of a criterion: the readings, and then the candidates.
     pub(super) fn field(&self, scene: &[Site], candidates: &[Site]) -> Field<'_> {
         let own = self.readings.iter().map(|reading| reading.site);
@@ -110,13 +122,18 @@ impl State {
         if count <= 4 {
             return 1.0;
         }
-        let every = count.div_ceil(MOST_FOR_SCALE);
-        let used: Vec<usize> = (0..count).step_by(every).collect();
+        let used = self.thinned(MOST_FOR_SCALE);
         let Some(squares) = self.weighted_squares(field, &used) else {
             return 1.0;
         };
         let degrees = READINGS_OF_PRIOR + used.len() as f64 - 4.0;
         ((READINGS_OF_PRIOR + squares) / degrees).sqrt()
+    }
+
+    /// The indices of at most so many readings, evenly.
+    fn thinned(&self, most: usize) -> Vec<usize> {
+        let all: Vec<usize> = (0..self.readings.len()).collect();
+        thinned(&all, most)
     }
 
     fn weighted_squares(&self, field: &Field<'_>, used: &[usize]) -> Option<f64> {
@@ -150,12 +167,10 @@ impl State {
     /// The root mean square of ln(predicted/measured), each reading being predicted from the others; `None`
     /// with fewer than six readings.
     pub(super) fn cross_validated(&self) -> Option<f64> {
-        let count = self.readings.len();
-        if count < 6 {
+        if self.readings.len() < 6 {
             return None;
         }
-        let every = count.div_ceil(MOST_FOR_SCALE / 4);
-        let left_out = (0..count).step_by(every);
+        let left_out = self.thinned(MOST_LEFT_OUT).into_iter();
         let squares: Vec<f64> = left_out.map(|i| self.without(i).powi(2)).collect();
         Some((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
     }
@@ -178,6 +193,18 @@ impl State {
         );
         let own = &self.readings[left_out];
         own.log - log_value(&brdf(Family::Paper, &belief.mode), &own.site.geometry)
+    }
+
+    /// The root mean square of the residuals r, for which the prior counts as two readings and the parameters as four:
+    ///
+    /// ```text
+    /// m^2 = (2 v + sum r^2)/(2 + N - 4),     v the variance of the error of a reading.
+    /// ```
+    pub(super) fn misfit(&self) -> f64 {
+        let squares: f64 = self.residuals().iter().map(|r| r * r).sum();
+        let of_prior = READINGS_OF_PRIOR * self.error.variance();
+        let degrees = READINGS_OF_PRIOR + self.readings.len() as f64 - 4.0;
+        ((of_prior + squares) / degrees.max(READINGS_OF_PRIOR)).sqrt()
     }
 
     /// ln(measured/model) of each reading.

@@ -1,5 +1,7 @@
 //! The result first: the fit on opening, the card, the models, and what each scan is said to be.
 
+use std::fmt::Write as _;
+
 use crate::common::{
     NoDialogs, Window, click, colour_of, drop_file, painted_lines, settle, shows, window_with, z307,
 };
@@ -210,4 +212,25 @@ fn readings_are_suggested_with_what_they_change_and_copied() {
     window.state_mut().state.apply(use_all);
     settle(&mut window);
     assert!(scan(&window).current_plan().is_none());
+}
+
+/// A broad lobe with a spike in the mirror direction.
+#[test]
+fn a_scan_that_the_model_does_not_follow_is_not_planned_for() {
+    let mut rows = "psi_deg,theta_deg,brdf_per_sr\n".to_owned();
+    for psi in [10, 30, 50, 70] {
+        for theta in (-80..=80).step_by(10) {
+            let from_mirror = f64::from(theta + psi).abs();
+            let spike = if from_mirror == 0.0 { 300.0 } else { 0.0 };
+            let value = 0.05 + 2.0 * (-from_mirror / 20.0).exp() + spike;
+            writeln!(rows, "{psi},{theta},{value}").unwrap();
+        }
+    }
+    let mut window = window();
+    drop_file(&mut window, "mirror.csv", &rows);
+    click(&mut window, "Plan");
+    click(&mut window, "Suggest readings");
+    settle(&mut window);
+    assert!(shows(&window, "Advice: the model fails for this surface"));
+    assert!(!shows(&window, "Predicted error"));
 }

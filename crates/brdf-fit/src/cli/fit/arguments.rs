@@ -6,14 +6,15 @@ use clap::Parser;
 
 use super::cube::CubeArguments;
 use super::values::{
-    DEFAULT_LIMIT, ModelArgument, Pairs, ReadingWeights, declaration, methods_or_none, pairs,
-    parse_energy_limit, parse_limit, parse_model,
+    DEFAULT_LIMIT, ModelArgument, ReadingWeights, methods_or_none, parse_energy_limit, parse_limit,
+    parse_model,
 };
+use crate::cli::reading::ReadingArguments;
 use crate::fit::FitOptions;
 use crate::fit::robust::Loss;
 use crate::model::FixedParameters;
 use crate::objective::weights::AngleWeight;
-use crate::scan::{Format, RefractiveIndex, Side};
+use crate::scan::RefractiveIndex;
 
 /// Fits the three-parameter BRDF of Li, Yan and Wu (2002) to goniometer scans
 ///
@@ -32,10 +33,6 @@ use crate::scan::{Format, RefractiveIndex, Side};
 /// for incorrect usage, input that cannot be read, or output that cannot be written.
 #[derive(Parser)]
 #[command(version, max_term_width = 100)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each is an option of the command line"
-)]
 pub(in crate::cli) struct Arguments {
     /// Scans, in any of the formats of --format; - is standard input
     #[arg(required_unless_present = "cube", value_name = "FILE")]
@@ -129,45 +126,13 @@ pub(in crate::cli) struct Arguments {
     #[arg(long, value_name = "PAIRS", allow_hyphen_values = true)]
     pub(super) g2: Option<AngleWeight>,
 
-    /// Format of the files: csv, merl, astm (E1392, E2387), zemax (tabular BSDF), black-lab,
-    /// goniometer (incidence angles in columns, view angles in rows), fred (tabulated BSDF), speos,
-    /// lighttools, tracepro, open-material (JSON), rt300s, rgl (tensor files), klems (WINDOW XML), ssdd,
-    /// or workbook (Excel, OpenDocument) [default: detected by content, then by extension]
-    #[arg(long, value_name = "FORMAT")]
-    pub(super) format: Option<Format>,
-
-    /// What columns of a table are whose names do not say it, as NAME=ROLE pairs such as
-    /// "Incident=psi_deg,R=reflectance_factor_percent"
-    ///
-    /// A role is a name that the table could have: psi_deg, theta_rad, phi_deg, mu_in, brdf_per_sr,
-    /// reflectance_factor_percent, log10_brdf, wavelength_nm, sigma_per_sr, n; or ignore.
-    #[arg(long, value_name = "PAIRS", value_parser = pairs)]
-    pub(super) columns: Option<Pairs>,
-
-    /// State a key in place of the comments of the files, such as quantity=reflectance_factor,
-    /// unit=percent, missing=-999, psi_deg=30 or wavelength_nm=632.8, or the sheet of a workbook,
-    /// sheet=NAME; may be repeated
-    #[arg(long, value_name = "KEY=VALUE", value_parser = declaration)]
-    pub(super) declare: Vec<(String, String)>,
-
-    /// Fit all files as one scan of one sample, for example a file for each incidence
-    #[arg(long)]
-    pub(super) join: bool,
+    #[command(flatten)]
+    pub(super) reading: ReadingArguments,
 
     /// Fit only this many readings of each wavelength, spread evenly over the angles theta_h,
     /// theta_d and phi_d between half vector and directions [default: all]
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) sample: Option<u64>,
-
-    /// The side of the surface normal on which the files count theta as positive: source or forward
-    /// [default: source; with --again as in that run]
-    #[arg(long, value_name = "SIDE")]
-    pub(super) theta_positive: Option<Side>,
-
-    /// The side on which the azimuth phi of the files is zero: source or forward [default: source;
-    /// with --again as in that run]
-    #[arg(long, value_name = "SIDE")]
-    pub(super) phi_zero: Option<Side>,
 
     /// Write all results to this file, as JSON with a format version; - is standard output
     #[arg(long, value_name = "FILE")]

@@ -154,11 +154,8 @@ fn fit(arguments: &Arguments, files: &Files<'_>) -> Result<Outcome, Failure> {
 
 fn read_options(arguments: &Arguments) -> ReadOptions {
     ReadOptions {
-        columns: arguments
-            .columns
-            .as_ref()
-            .map_or_else(Vec::new, |pairs| pairs.0.clone()),
-        declarations: arguments.declare.clone(),
+        columns: arguments.reading.columns().to_vec(),
+        declarations: arguments.reading.declare.clone(),
         ..ReadOptions::default()
     }
 }

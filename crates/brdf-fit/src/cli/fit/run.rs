@@ -1,7 +1,5 @@
 //! Reads the scans of `brdf fit` and fits them.
 
-use std::borrow::Cow;
-
 use rayon::prelude::*;
 
 use super::arguments::Arguments;
@@ -12,13 +10,12 @@ use crate::cli::failure::Failure;
 use crate::cli::outcome::{Outcome, print_failures};
 use crate::cli::problems::{Place, Problems, place};
 use crate::cli::progress::{PhaseMessage, bar};
+use crate::cli::reading::joined;
 use crate::cli::stream;
 use crate::fit::{FitError, FitOptions};
-use crate::format::listed;
 use crate::progress::{NoObserver, Observer};
 use crate::read::{LazyScan, ReadError};
 use crate::report::{ByFile, Document, Report};
-use crate::scan::Measurements;
 
 /// Fits all scans, and prints and writes the results. A problem with one scan or one output does
 /// not prevent the others.
@@ -98,38 +95,11 @@ fn read_all(
         false => scans,
         // A sample of which a part is missing is not fitted.
         true if !all_read => Vec::new(),
-        true => joined(scans, problems),
+        true => joined(scans).unwrap_or_else(|failure| {
+            problems.add(&failure, Outcome::Failed);
+            Vec::new()
+        }),
     }
-}
-
-/// One scan of all files, for each wavelength.
-fn joined(scans: Vec<LazyScan>, problems: &mut Problems) -> Vec<LazyScan> {
-    let names = scans.iter().map(LazyScan::source);
-    let names: Vec<String> = names.map(Cow::into_owned).collect();
-    let all: Result<Vec<Measurements>, ReadError> =
-        scans.into_iter().map(LazyScan::into_measurements).collect();
-    let all = match all {
-        Ok(all) => all,
-        Err(error) => {
-            problems.add(&Failure::from(error), Outcome::Failed);
-            return Vec::new();
-        }
-    };
-    if let Some(joined) = Measurements::joined(all) {
-        return joined
-            .by_wavelength()
-            .into_iter()
-            .map(LazyScan::Loaded)
-            .collect();
-    }
-    let place = Place {
-        file: listed(&names, ", "),
-        wavelength_um: None,
-        model: None,
-    };
-    let message = "the files state different refractive indices: expected one sample for --join";
-    problems.add_usage(place, message.to_owned());
-    Vec::new()
 }
 
 /// A scan of one wavelength, and how it is fitted.

@@ -152,21 +152,22 @@ impl Arguments {
         });
         let sides = known.or(with_sides).map(|report| report.convention);
         let settings = known.or(first).map(|report| &report.read_settings);
-        let columns = self.columns.as_ref().map_or(&[][..], |pairs| &pairs.0);
+        let given = &self.reading;
+        let columns = given.columns();
         ReadOptions {
-            format: self.format.or(known.map(|report| report.format)),
-            theta_positive: self
+            format: given.format.or(known.map(|report| report.format)),
+            theta_positive: given
                 .theta_positive
                 .or(sides.map(|sides| sides.theta_positive)),
-            phi_zero: self.phi_zero.or(sides.map(|sides| sides.phi_zero)),
+            phi_zero: given.phi_zero.or(sides.map(|sides| sides.phi_zero)),
             sample: self.sample.and_then(|count| usize::try_from(count).ok()),
             columns: settings.map_or_else(
                 || columns.to_vec(),
                 |settings| with_precedence(columns, &settings.columns),
             ),
             declarations: settings.map_or_else(
-                || self.declare.clone(),
-                |settings| with_precedence(&self.declare, &settings.declarations),
+                || given.declare.clone(),
+                |settings| with_precedence(&given.declare, &settings.declarations),
             ),
         }
     }
@@ -178,7 +179,7 @@ impl Arguments {
             let known = file.and_then(|file| document.report_on(stream::shown(file)));
             known.or_else(|| document.reports().first())
         });
-        self.join || report.is_some_and(|report| !report.read_settings.joined.is_empty())
+        self.reading.join || report.is_some_and(|report| !report.read_settings.joined.is_empty())
     }
 }
 

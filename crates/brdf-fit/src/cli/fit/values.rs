@@ -5,7 +5,6 @@ use clap::builder::PossibleValuesParser;
 
 use crate::fit::energy::DEFAULT_LIMIT_DEG;
 use crate::model::Model;
-use crate::read::DECLARED_KEYS;
 
 /// The value of `--model`.
 #[derive(Clone, Copy, PartialEq)]
@@ -39,35 +38,6 @@ pub(super) fn parse_model(text: &str) -> Result<ModelArgument, String> {
             .parse()
             .map(ModelArgument::Given)
             .map_err(|error| format!("{error}, or auto")),
-    }
-}
-
-/// The value of `--columns`.
-#[derive(Clone, Default)]
-pub(super) struct Pairs(pub(super) Vec<(String, String)>);
-
-pub(super) fn pairs(text: &str) -> Result<Pairs, String> {
-    let pairs = text.split(',').map(|pair| {
-        let (name, role) = pair
-            .rsplit_once('=')
-            .ok_or_else(|| format!("\"{pair}\": expected NAME=ROLE, such as Incident=psi_deg"))?;
-        Ok((name.trim().to_owned(), role.trim().to_owned()))
-    });
-    pairs.collect::<Result<_, String>>().map(Pairs)
-}
-
-pub(super) fn declaration(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text
-        .split_once('=')
-        .ok_or("expected KEY=VALUE, such as quantity=reflectance_factor")?;
-    let key = key.trim().to_lowercase();
-    if DECLARED_KEYS.contains(&key.as_str()) {
-        Ok((key, value.trim().to_owned()))
-    } else {
-        let keys = DECLARED_KEYS.join(", ");
-        Err(format!(
-            "the key \"{key}\" is not known: expected one of {keys}"
-        ))
     }
 }
 

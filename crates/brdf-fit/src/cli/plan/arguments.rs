@@ -5,8 +5,23 @@ use std::path::PathBuf;
 use brdf_core::scene::DomainError;
 use clap::{Args, ValueEnum};
 
+use crate::cli::reading::ReadingArguments;
 use crate::cli::scene::{SceneArguments, positive};
 use crate::planning::{ErrorModel, Instrument, MaterialClass, PlanOptions, SlowAxis};
+
+/// The options that have no effect on a review.
+const OF_LISTS: [&str; 10] = [
+    "csv",
+    "list",
+    "tolerance",
+    "readings",
+    "from_source",
+    "largest_incidence",
+    "largest_view",
+    "step_incidence",
+    "step_view",
+    "step_azimuth",
+];
 
 /// Lists the readings to take next, and says when to stop
 ///
@@ -21,14 +36,14 @@ use crate::planning::{ErrorModel, Instrument, MaterialClass, PlanOptions, SlowAx
 pub(in crate::cli) struct Arguments {
     /// The readings so far, in any format that brdf fit reads [default: none]; - is standard input
     #[arg(value_name = "FILE")]
-    pub(super) file: Option<PathBuf>,
+    pub(super) files: Vec<PathBuf>,
 
     /// Look back on FILE instead: which of its readings were needed, and what the scene has that they lack
-    #[arg(long, requires = "file", conflicts_with_all = ["csv", "list"])]
+    #[arg(long, requires = "files", conflicts_with_all = OF_LISTS)]
     pub(super) review: bool,
 
     /// Of readings at several wavelengths, the wavelength to plan for, in um (the nearest within 1 %)
-    #[arg(long, value_name = "UM", value_parser = positive, requires = "file")]
+    #[arg(long, value_name = "UM", value_parser = positive, requires = "files", allow_negative_numbers = true)]
     pub(super) wavelength: Option<f64>,
 
     /// The kind of surface: paint, anodise, metal or unknown. It matters as long as readings are few
@@ -39,12 +54,15 @@ pub(in crate::cli) struct Arguments {
     scene: SceneArguments,
 
     /// The rms error of f_r over the scene that is allowed, relative to f_r
-    #[arg(long, value_name = "ERROR", default_value = "0.1", value_parser = positive)]
+    #[arg(long, value_name = "ERROR", default_value = "0.1", value_parser = positive, allow_negative_numbers = true)]
     tolerance: f64,
 
     /// The largest number of readings to list
-    #[arg(long, value_name = "COUNT", default_value = "12", value_parser = clap::value_parser!(u16).range(1..=200))]
+    #[arg(long, value_name = "COUNT", default_value = "12", value_parser = clap::value_parser!(u16).range(1..=200), allow_negative_numbers = true)]
     readings: u16,
+
+    #[command(flatten)]
+    pub(super) reading: ReadingArguments,
 
     #[command(flatten)]
     instrument: InstrumentArguments,
@@ -65,27 +83,27 @@ pub(in crate::cli) struct Arguments {
 #[command(next_help_heading = "Instrument")]
 struct InstrumentArguments {
     /// Smallest angle between the source and the detector, in degrees
-    #[arg(long, value_name = "DEGREES", default_value = "5", value_parser = angle)]
+    #[arg(long, value_name = "DEGREES", default_value = "5", value_parser = angle, allow_negative_numbers = true)]
     from_source: f64,
 
     /// Largest incidence angle, in degrees
-    #[arg(long, value_name = "DEGREES", default_value = "80", value_parser = angle)]
+    #[arg(long, value_name = "DEGREES", default_value = "80", value_parser = angle, allow_negative_numbers = true)]
     largest_incidence: f64,
 
     /// Largest view angle, in degrees
-    #[arg(long, value_name = "DEGREES", default_value = "80", value_parser = angle)]
+    #[arg(long, value_name = "DEGREES", default_value = "80", value_parser = angle, allow_negative_numbers = true)]
     largest_view: f64,
 
     /// Step of the incidence angle, in degrees
-    #[arg(long, value_name = "DEGREES", default_value = "5", value_parser = step)]
+    #[arg(long, value_name = "DEGREES", default_value = "5", value_parser = step, allow_negative_numbers = true)]
     step_incidence: f64,
 
     /// Step of the view angle, in degrees
-    #[arg(long, value_name = "DEGREES", default_value = "5", value_parser = step)]
+    #[arg(long, value_name = "DEGREES", default_value = "5", value_parser = step, allow_negative_numbers = true)]
     step_view: f64,
 
     /// Step of the view azimuth, in degrees
-    #[arg(long, value_name = "DEGREES", default_value = "15", value_parser = step)]
+    #[arg(long, value_name = "DEGREES", default_value = "15", value_parser = step, allow_negative_numbers = true)]
     step_azimuth: f64,
 
     /// The axis that is slow to change
@@ -93,11 +111,11 @@ struct InstrumentArguments {
     slow: SlowArgument,
 
     /// Time of a reading, in seconds
-    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", default_value = "30", value_parser = positive, allow_negative_numbers = true)]
     seconds: f64,
 
     /// Time of a change of the slow axis, in seconds
-    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = not_negative)]
+    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = not_negative, allow_negative_numbers = true)]
     seconds_change: f64,
 }
 

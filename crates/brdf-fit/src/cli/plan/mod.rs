@@ -5,15 +5,14 @@ mod text;
 
 pub(super) use arguments::Arguments;
 
-use std::path::Path;
-
 use super::failure::Failure;
 use super::outcome::{Outcome, print_failures};
+use super::reading::joined;
 use super::stream;
-use crate::format::shortest;
-use crate::output::print_text;
-use crate::planning::{plan_readings, review};
-use crate::read::{LazyScan, ReadOptions};
+use crate::format::{listed, shortest};
+use crate::output::{print_note, print_text};
+use crate::planning::{PlanError, plan_readings, review};
+use crate::read::LazyScan;
 use crate::scan::{Measurements, WAVELENGTH_TOLERANCE};
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
@@ -22,19 +21,15 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 
 impl Arguments {
     fn plan(&self) -> Result<(), Failure> {
-        let input = self.file.as_deref().map(|path| ("FILE", path));
+        let inputs = self.files.iter().map(|path| ("FILE", path.as_path()));
         let outputs = [("--csv", &self.csv), ("--list", &self.list)];
         let outputs = outputs.into_iter();
         let outputs: Vec<_> = outputs
             .filter_map(|(name, path)| Some((name, path.as_deref()?)))
             .collect();
-        stream::check(input, outputs.iter().copied(), None)?;
+        stream::check(inputs, outputs.iter().copied(), None)?;
         let options = self.options()?;
-        let scan = self
-            .file
-            .as_deref()
-            .map(|path| self.scan(path))
-            .transpose()?;
+        let scan = self.scan()?;
         if let (true, Some(scan)) = (self.review, &scan) {
             let review = review(&scan.measurements, &options)?;
             let text = text::review(&review, &scan.measurements, &scan.name, &options);
@@ -48,26 +43,47 @@ impl Arguments {
         if let Some(path) = &self.list {
             stream::write(path, |writer| writer.write_all(plan.list().as_bytes()))?;
         }
+        let name = scan.as_ref().map(|scan| scan.name.as_str());
+        let summary = text::summary(&plan, name, &options);
         if outputs.iter().any(|(_, path)| stream::is_stream(path)) {
+            print_note(&summary);
             return Ok(());
         }
-        let name = scan.as_ref().map(|scan| scan.name.as_str());
-        print_text(&text::plan(&plan, name, &options)).map_err(Failure::Print)
+        let list = text::list(&plan, &options);
+        print_text(&format!("{summary}{list}")).map_err(Failure::Print)
     }
 
-    /// The scan so far, of the one wavelength or that of `--wavelength`.
-    fn scan(&self, path: &Path) -> Result<Scan, Failure> {
-        let scans = stream::scans(path, &ReadOptions::default())?;
-        let name = |um: Option<f64>| um.map_or_else(|| "no wavelength".to_owned(), shortest);
-        let found: Vec<String> = scans
-            .iter()
-            .map(|scan| name(scan.wavelength_um()))
-            .collect();
-        let chosen = match self.wavelength {
-            None if scans.len() > 1 => {
-                let several = crate::planning::PlanError::Wavelengths(scans.len());
-                return Err(Failure::from(several).in_file(path));
+    /// The scan so far, of the one wavelength or that of `--wavelength`; `None` without a file.
+    fn scan(&self) -> Result<Option<Scan>, Failure> {
+        let options = self.reading.options();
+        let mut scans = Vec::new();
+        for path in &self.files {
+            scans.extend(stream::scans(path, &options)?);
+        }
+        let name = match &self.files[..] {
+            [] => return Ok(None),
+            [path] => stream::shown(path).display().to_string(),
+            files if !self.reading.join => return Err(Failure::SeveralFiles(files.len())),
+            files => {
+                scans = joined(scans)?;
+                let names = files
+                    .iter()
+                    .map(|path| stream::shown(path).display().to_string());
+                listed(&names.collect::<Vec<_>>(), ", ")
             }
+        };
+        self.chosen(scans, &name)
+            .map(Some)
+            .map_err(|failure| failure.at(name))
+    }
+
+    /// The scan of the one wavelength or that of `--wavelength`.
+    fn chosen(&self, scans: Vec<LazyScan>, name: &str) -> Result<Scan, Failure> {
+        let wavelengths = scans.iter().filter_map(LazyScan::wavelength_um);
+        let found: Vec<String> = wavelengths.map(shortest).collect();
+        let count = scans.len();
+        let chosen = match self.wavelength {
+            None if count > 1 => return Err(PlanError::Wavelengths(count).into()),
             None => scans.into_iter().next(),
             Some(wavelength) => nearest(scans, wavelength),
         };
@@ -76,13 +92,11 @@ impl Arguments {
             return Err(Failure::NoScan {
                 wavelength_um,
                 found,
-            }
-            .in_file(path));
+            });
         };
-        let shown = stream::shown(path).display();
         let name = match chosen.wavelength_um() {
-            Some(um) => format!("{shown} at {} um", shortest(um)),
-            None => shown.to_string(),
+            Some(um) => format!("{name} at {} um", shortest(um)),
+            None => name.to_owned(),
         };
         let measurements = chosen.measurements()?.into_owned();
         Ok(Scan { measurements, name })

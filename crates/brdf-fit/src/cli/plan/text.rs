@@ -4,49 +4,71 @@ use std::fmt::Write as _;
 
 use brdf_core::scene::Azimuth;
 
-use crate::format::{counted, two_digits};
+use crate::format::{counted, digits, shortest, two_digits};
 use crate::planning::{
     Advice, Gap, MeasurementPlan, PlanOptions, PlannedReading, Prediction, REVIEW_WITHIN, Review,
-    Setting, error_percent as percent, rounded_deg,
+    Setting, error_percent as percent, error_percent_beside, rounded_deg,
 };
 use crate::report::{Column, Row, Table};
 use crate::scan::Measurements;
 
 /// The directions of the scene and the tolerance.
 fn scene(options: &PlanOptions) -> String {
-    let range =
-        |(from, to): (f64, f64)| format!("{} ... {} deg", rounded_deg(from), rounded_deg(to));
+    let range = |(from, to): (f64, f64)| {
+        if from == to {
+            return format!("{} deg", rounded_deg(from));
+        }
+        format!("{} ... {} deg", rounded_deg(from), rounded_deg(to))
+    };
     let domain = &options.scene;
     let azimuth = match domain.azimuth() {
         Azimuth::InPlane => "in the plane of incidence",
         Azimuth::Full => "all azimuths",
     };
     format!(
-        "psi {}, theta {}, {azimuth}; tolerance {}",
+        "psi {}, theta {}, {azimuth}; tolerance {} %",
         range(domain.incidence()),
         range(domain.view()),
-        percent(options.tolerance.ln_1p())
+        // Without the digits of rounding.
+        shortest((1e11 * options.tolerance).round() / 1e9)
     )
 }
 
-/// What is planned.
-pub(super) fn plan(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOptions) -> String {
+/// How to look at a scan that the model does not follow.
+const LOOK: &str = "brdf fit FILE --model three+n --weights relative --compare --plot FOLDER";
+
+/// What is known and what is advised.
+pub(super) fn summary(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOptions) -> String {
     let mut text = String::new();
     line(&mut text, "scene", &scene(options));
     line(&mut text, "so far", &so_far(plan, name, options));
-    line(&mut text, "error", &errors_now(plan));
-    line(&mut text, "advice", &advice(plan, options));
-    if plan.readings.is_empty() {
-        return text;
+    // Of a model that fails, no prediction has a meaning.
+    if !matches!(plan.advice, Advice::Fails { .. }) {
+        line(&mut text, "error", &errors_now(plan, options));
     }
-    let _ = write!(text, "\n{}", table(&plan.readings, &plan.now).text());
-    text.push_str(
-        "angles in degrees, theta positive on the side of the source\n\
+    line(&mut text, "advice", &advice(plan, options));
+    text
+}
+
+/// The planned readings, if any.
+pub(super) fn list(plan: &MeasurementPlan, options: &PlanOptions) -> String {
+    if plan.readings.is_empty() {
+        return String::new();
+    }
+    let table = table(&plan.readings, &plan.now, options);
+    format!(
+        "\n{}\
+         angles in degrees, theta positive on the side of the source\n\
          error: predicted rms error of f_r over the scene after the readings up to this one; k2, kD, k1, n - 1: their\n\
          predicted standard errors; rank: the order in which the readings were chosen\n\
          then: brdf fit FILE --model three+n --weights relative\n",
-    );
-    text
+        table.text()
+    )
+}
+
+/// An error of ln f_r, with digits that tell it from the tolerance.
+fn beside(error: f64, options: &PlanOptions) -> String {
+    error_percent_beside(error, options.tolerance.ln_1p())
 }
 
 fn line(text: &mut String, label: &str, content: &str) {
@@ -77,24 +99,30 @@ fn so_far(plan: &MeasurementPlan, name: Option<&str>, options: &PlanOptions) -> 
     text
 }
 
-fn errors_now(plan: &MeasurementPlan) -> String {
-    let mut text = format!("predicted {} rms over the scene", percent(plan.now.error));
+fn errors_now(plan: &MeasurementPlan, options: &PlanOptions) -> String {
+    let mut text = format!(
+        "predicted {} rms over the scene",
+        beside(plan.now.error, options)
+    );
     if let Some(error) = plan.cross_validated {
         let _ = write!(
             text,
             ", {} for each reading from the others",
-            percent(error)
+            beside(error, options)
         );
     }
     let _ = write!(
         text,
         "; the lowest found with further readings: {}",
-        percent(plan.limit)
+        beside(plan.limit, options)
     );
     text
 }
 
 fn advice(plan: &MeasurementPlan, options: &PlanOptions) -> String {
+    if let Advice::Fails { .. } = plan.advice {
+        return format!("{}: {LOOK}", plan.advice);
+    }
     if plan.advice != Advice::Continue {
         return plan.advice.to_string();
     }
@@ -110,20 +138,31 @@ fn advice(plan: &MeasurementPlan, options: &PlanOptions) -> String {
         "take {} in {}: predicted error {}{reached}",
         counted(plan.readings.len(), "reading"),
         duration(seconds),
-        percent(error)
+        beside(error, options)
     )
 }
 
-/// A time in minutes or hours.
+/// A time in the two units that tell readings apart: minutes and seconds, hours and minutes, days and hours.
 fn duration(seconds: f64) -> String {
-    if seconds < 5400.0 {
-        format!("{} min", (seconds / 60.0).ceil())
-    } else {
-        format!("{:.1} h", seconds / 3600.0)
+    let in_units = |unit: f64, names: [&str; 2], parts: f64| {
+        let count = (seconds / unit * parts).round();
+        let (whole, rest) = ((count / parts).floor(), count % parts);
+        match (whole, rest) {
+            (0.0, _) => format!("{rest} {}", names[1]),
+            (_, 0.0) => format!("{whole} {}", names[0]),
+            _ => format!("{whole} {} {rest} {}", names[0], names[1]),
+        }
+    };
+    match seconds {
+        ..59.5 => format!("{} s", two_digits(seconds)),
+        ..3599.5 => in_units(60.0, ["min", "s"], 60.0),
+        ..172_770.0 => in_units(3600.0, ["h", "min"], 60.0),
+        ..86_400_000.0 => in_units(86400.0, ["d", "h"], 24.0),
+        _ => format!("{} d", digits(seconds / 86400.0)),
     }
 }
 
-fn table(readings: &[PlannedReading], now: &Prediction) -> Table {
+fn table(readings: &[PlannedReading], now: &Prediction, options: &PlanOptions) -> Table {
     let columns = [
         Column::right("psi", 5),
         Column::right("theta", 6),
@@ -134,18 +173,18 @@ fn table(readings: &[PlannedReading], now: &Prediction) -> Table {
         Column::right("kD", 7),
         Column::right("k1", 7),
         Column::right("n - 1", 7),
-        Column::right("after", 8),
+        Column::right("after", 12),
     ];
     let before = [String::new(), String::new(), String::new(), String::new()];
     let before = before
         .into_iter()
-        .chain(predicted(now))
-        .chain(["0 min".to_owned()]);
+        .chain(predicted(now, options))
+        .chain(["0 s".to_owned()]);
     let rows = readings.iter().map(|reading| {
         let Setting { psi, theta, phi } = reading.setting;
         let angles = [psi, theta, phi].map(rounded_deg);
         let cells = angles.into_iter().chain([reading.rank.to_string()]);
-        let cells = cells.chain(predicted(&reading.prediction));
+        let cells = cells.chain(predicted(&reading.prediction, options));
         Row::new(cells.chain([duration(reading.seconds)]))
     });
     Table {
@@ -156,9 +195,9 @@ fn table(readings: &[PlannedReading], now: &Prediction) -> Table {
     }
 }
 
-fn predicted(prediction: &Prediction) -> impl Iterator<Item = String> {
-    let each = std::iter::once(prediction.error).chain(prediction.deviations);
-    each.map(percent)
+fn predicted(prediction: &Prediction, options: &PlanOptions) -> impl Iterator<Item = String> {
+    let error = beside(prediction.error, options);
+    std::iter::once(error).chain(prediction.deviations.map(percent))
 }
 
 /// What a scan had and lacks.
@@ -209,7 +248,7 @@ pub(super) fn review(
                 )
             }
             None => format!(
-                "more than {} are needed to stay within {within} times that error",
+                "more than {}, to stay within {within} times that error",
                 counted(review.steps.len(), "reading")
             ),
         };
@@ -266,5 +305,27 @@ fn order_table(review: &Review, settings: &[Setting]) -> Table {
         ],
         rows: rows.collect(),
         notes: Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_the_units_that_tell_readings_apart() {
+        for (seconds, text) in [
+            (0.25, "0.25 s"),
+            (30.0, "30 s"),
+            (59.7, "1 min"),
+            (150.0, "2 min 30 s"),
+            (180.0, "3 min"),
+            (3599.9, "1 h"),
+            (17_640.0, "4 h 54 min"),
+            (1e6, "11 d 14 h"),
+            (1e12, "1.15741e7 d"),
+        ] {
+            assert_eq!(duration(seconds), text, "{seconds}");
+        }
     }
 }

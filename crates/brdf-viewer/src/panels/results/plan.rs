@@ -1,6 +1,6 @@
 //! The readings to take next, and what they would change.
 
-use brdf_fit::planning::{MeasurementPlan, error_percent, rounded_deg};
+use brdf_fit::planning::{Advice, MeasurementPlan, error_percent, rounded_deg};
 use egui::{Grid, ScrollArea, Ui};
 
 use crate::intent::Intent;
@@ -32,7 +32,10 @@ pub(super) fn show(ui: &mut Ui, _: &State, scan: &Scan, intents: &mut Vec<Intent
         return;
     };
     ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-        ui.label(format!("{} over the scan's range of angles.", errors(plan)));
+        // Of a model that fails, no prediction has a meaning.
+        if !matches!(plan.advice, Advice::Fails { .. }) {
+            ui.label(format!("{} over the scan's range of angles.", errors(plan)));
+        }
         ui.label(format!("Advice: {}.", plan.advice));
         if !plan.readings.is_empty() {
             ui.label(changes(plan));

@@ -515,7 +515,7 @@ fn optima_that_are_hard_to_find_are_found() {
             &azimuth,
             Model::BeckmannN,
             0.0,
-            vec![(4, 12), (5, 1224), (5, 1553)],
+            vec![(4, 12), (5, 93), (5, 767), (5, 1224), (5, 1553), (5, 1926)],
         ),
         (&few, Model::BeckmannN, 0.0, vec![(2, 94)]),
     ];

@@ -19,8 +19,11 @@ const NEAR_END_OF_K1: f64 = 100.0;
 /// The factor of k1 to the next valley: more than a step of the grid.
 const BESIDE: f64 = 1.4;
 
+/// The factor of k1 by which a valley that is crossed along n may have moved.
+const ASLANT: f64 = 1.2;
+
 /// On a plain, a change of ln k1 changes the lobe's column by less than this fraction.
-const FLAT: f64 = 1e-6;
+const FLAT: f64 = 1e-3;
 
 /// The refractive indices of other valleys: two, and one across the long steps of the grid before its end.
 const OTHER_INDICES: [f64; 2] = [1.1, 1.6];
@@ -57,10 +60,11 @@ impl Descent<'_> {
     /// The wide end of the plain on which a point lies, if it does: far below the distance of the readings, the
     /// width has no effect, and no slope leads out of there.
     fn end_of_plain(&self, here: &Local, rows: Rows<'_>) -> Option<ModelParameters> {
-        let (narrowest, widest) = Parameter::K1.range();
+        let (_, widest) = Parameter::K1.range();
         let slope = here.products.of(2, 2).sqrt() * here.at.k1;
         let is_plain = self.model.frees(Parameter::K1)
-            && here.at.k1 < NEAR_END_OF_K1 * narrowest
+            && here.at.k2 > 0.0
+            && here.at.k1 < 1.0
             && slope <= FLAT * here.products.of(0, 0).sqrt();
         if !is_plain {
             return None;
@@ -111,8 +115,9 @@ impl Descent<'_> {
         let is_alike = |other: &ModelParameters| {
             self.local(*other, [false; 3], rows).error <= here.error * (1.0 + alike)
         };
-        others
-            .filter(|other| (other.k1, other.n) != (at.k1, at.n) && is_alike(other))
+        let alike = others.filter(|other| (other.k1, other.n) != (at.k1, at.n) && is_alike(other));
+        alike
+            .flat_map(|other| aslant(other, other.n != at.n))
             .collect()
     }
 
@@ -154,4 +159,15 @@ impl Descent<'_> {
         }
         start
     }
+}
+
+/// A point, and widths on both sides of it where the valley is crossed along n: it runs aslant in k1 and n.
+fn aslant(at: ModelParameters, is_across: bool) -> impl Iterator<Item = ModelParameters> {
+    let (narrowest, widest) = Parameter::K1.range();
+    let factors = [1.0, ASLANT, 1.0 / ASLANT];
+    let used = if is_across { factors.len() } else { 1 };
+    factors.into_iter().take(used).map(move |factor| {
+        let k1 = (at.k1 * factor).clamp(narrowest, widest);
+        ModelParameters { k1, ..at }
+    })
 }

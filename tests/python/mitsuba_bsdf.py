@@ -126,13 +126,35 @@ def picture(path, parts):
     }
 
 
-def ball(path, side, lamp, irradiance, sky, spp, pictures):
+# The shapes of the viewer and the cameras that look at them: a ball from far away, and a plate at a small angle from
+# above, in a picture that is twice as wide as high.
+BODIES = {
+    "ball": (
+        {"type": "sphere"},
+        {"type": "orthographic", "to_world": {"origin": [0, 0, 5], "target": [0, 0, 0], "up": [0, 1, 0]}},
+    ),
+    "plate": (
+        {"type": "rectangle", "to_world": [0.95, 1.6, 1]},
+        {
+            "type": "perspective",
+            "fov": float(np.degrees(2 * np.arctan(0.28))),
+            "to_world": {"origin": [0, -5, 1.34], "target": [0, 0, 0], "up": [0, 0, 1]},
+        },
+    ),
+}
+
+
+def surface(path, body, size, lamp, irradiance, sky, spp, pictures):
     """
-    The mean of pictures of a ball, seen from far away along z, and its standard error: red, green and
-    blue of each pixel, row by row. The light comes from a direction and from all around.
+    The mean of pictures of a body, its standard error, and how much of each pixel the body covers: red, green and blue
+    of each pixel, row by row. The light comes from a direction and from all around.
     """
     name, _ = bsdf(path)
     transform = mi.ScalarTransform4f()
+    shape, sensor = (dict(part) for part in BODIES[body])
+    if "to_world" in shape:
+        shape["to_world"] = transform.scale(shape["to_world"])
+    sensor["to_world"] = transform.look_at(**sensor["to_world"])
     emitters = {}
     if irradiance > 0:
         emitters["lamp"] = {
@@ -146,27 +168,30 @@ def ball(path, side, lamp, irradiance, sky, spp, pictures):
         "type": "scene",
         "integrator": {"type": "path", "max_depth": 2, "hide_emitters": True},
         "sensor": {
-            "type": "orthographic",
-            "to_world": transform.look_at(origin=[0, 0, 5], target=[0, 0, 0], up=[0, 1, 0]),
+            **sensor,
             "film": {
                 "type": "hdrfilm",
-                "width": side,
-                "height": side,
-                "pixel_format": "rgb",
+                "width": size[0],
+                "height": size[1],
+                "pixel_format": "rgba",
                 "component_format": "float32",
                 "rfilter": {"type": "box"},
             },
             "sampler": {"type": "independent"},
         },
-        "ball": {"type": "sphere", "bsdf": {"type": name}},
+        "body": {**shape, "bsdf": {"type": name}},
         **emitters,
     })
     drawn = [np.array(mi.render(scene, spp=spp, seed=seed), dtype=float) for seed in range(pictures)]
     mean, error = np.mean(drawn, axis=0), np.std(drawn, axis=0, ddof=1) / pictures**0.5
-    return {"mean": mean.ravel().tolist(), "error": error.ravel().tolist()}
+    return {
+        "mean": mean[..., :3].ravel().tolist(),
+        "error": error[..., :3].ravel().tolist(),
+        "covered": mean[..., 3].ravel().tolist(),
+    }
 
 
-STEPS = {"points": points, "chi2": chi2, "weights": weights, "picture": picture, "ball": ball}
+STEPS = {"points": points, "chi2": chi2, "weights": weights, "picture": picture, "surface": surface}
 
 
 def main():

@@ -385,7 +385,7 @@ fn write(samples: &[Sample], found: &[Value], folder: &Path) {
 fn lobe_png(sample: &Sample) -> Vec<u8> {
     let (psi_deg, scale) = sample.lobe;
     let scan = sample.scan.iter();
-    let incidences = scan.flat_map(|scan| scan.readings());
+    let incidences = scan.flat_map(Measurements::readings);
     let at_psi = incidences.filter(|reading| (reading.psi.to_degrees() - psi_deg).abs() < 0.01);
     let readings = at_psi.map(|reading| Spot {
         direction: direction(reading.theta, reading.phi),

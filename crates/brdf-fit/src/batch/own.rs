@@ -6,7 +6,7 @@ use pulp::{Simd, WithSimd};
 
 use super::along::Along;
 use super::plan::BatchPlan;
-use crate::model::{FAINT, Grid, PLAIN, ReducedModel, faint};
+use crate::model::{FAINT, FEW_READINGS, Grid, PLAIN, ReducedModel, faint};
 use crate::objective::{
     LobeColumns, Objective, PROCESSOR, ProfileSums, demand_for_lobe, dot_of, solve_for,
 };
@@ -30,10 +30,6 @@ const WORSE_ALONG_K1: f64 = 0.01;
 
 /// Minima that are no deeper than this fraction of the readings' squares are rounding, except the lowest.
 const ROUNDING: f64 = 1e-14;
-
-/// Below this number of readings that were taken, descents replace the search along k1: few readings are
-/// nearly interpolated, and their E may have minima between the widths of the grid.
-const FEW_TAKEN: usize = 24;
 
 /// A lobe's column is parallel to the diffuse one where the square of its rest is less than this fraction.
 const COLLINEAR: f64 = 1e-14;
@@ -187,7 +183,10 @@ impl<'a> OwnSearch<'a> {
         columns: &mut LobeColumns,
     ) -> ModelParameters {
         match self.along_k1 {
-            Some(has_diffuse) if used >= FEW_TAKEN => self.along_k1(i, scan, has_diffuse, columns),
+            // Few readings are nearly interpolated: their E may have minima between the widths of the grid.
+            Some(has_diffuse) if used >= FEW_READINGS => {
+                self.along_k1(i, scan, has_diffuse, columns)
+            }
             _ => self.descended(i, scan),
         }
     }

@@ -140,14 +140,13 @@ impl Descent<'_> {
         let mut inner = [high - ratio * (high - low), low + ratio * (high - low)];
         let mut there = inner.map(at);
         for _ in 0..MOST_MOVES {
-            let [left, right] = there.each_ref().map(demand);
-            let higher = usize::from(right > left);
-            if there[higher].at.k2 > 0.0 {
-                let [left, right] = there;
-                return if higher == 0 { left } else { right };
-            }
             let [left, right] = there;
-            if higher == 1 {
+            let is_right = demand(&right) > demand(&left);
+            let higher = if is_right { &right } else { &left };
+            if higher.at.k2 > 0.0 {
+                return if is_right { right } else { left };
+            }
+            if is_right {
                 low = inner[0];
                 inner = [inner[1], low + ratio * (high - low)];
                 there = [right, at(inner[1])];
